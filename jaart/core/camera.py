@@ -1,0 +1,132 @@
+"""A camera and the rays through its pixels."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jaart.core.errors import RayError
+
+if TYPE_CHECKING:
+    from jaart.core.kernels.pinhole import View
+
+Array = NDArray[np.float64]
+Vector = tuple[float, float, float]
+
+#: From where a scene is seen when nobody says: from the front, to the right and above.
+DEFAULT_VIEW = (0.45, -1.0, 0.55)
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A pinhole camera, or an orthographic one when ortho is given.
+
+    eye, target: in cells; up: which way is up, chosen when None (z, or y where the view runs
+    along z); fov: degrees across the longer side of the picture; ortho: width of the view across the
+    longer side, in cells, instead of fov.
+    """
+
+    eye: Vector
+    target: Vector
+    up: Vector | None = None
+    fov: float = 30.0
+    ortho: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("eye", "target", "up"):
+            value = getattr(self, name)
+            if value is not None:
+                object.__setattr__(self, name, _vector(name, value))
+        if self.ortho is None and not 0 < self.fov < 180:
+            raise RayError(f"camera fov = {self.fov:g}: expected degrees above 0 and below 180")
+        if self.ortho is not None and not (0 < self.ortho < math.inf):
+            raise RayError(f"camera ortho = {self.ortho:g}: expected a width above 0")
+        self.frame()
+
+    @classmethod
+    def fit(cls, extent: Vector, direction: Vector = DEFAULT_VIEW, fov: float = 30.0) -> Camera:
+        """A camera that sees a whole box (0, 0, 0)…extent from a direction.
+
+        extent: size of the scene in cells; direction: from the middle towards the eye; fov: degrees.
+        """
+        middle = np.asarray(extent) / 2
+        towards = np.asarray(direction) / np.linalg.norm(direction)
+        radius = float(np.linalg.norm(extent)) / 2
+        eye = middle + towards * radius / math.sin(math.radians(fov) / 2)
+        return cls(eye=tuple(eye), target=tuple(middle), fov=fov)
+
+    def frame(self) -> tuple[Array, Array, Array]:
+        """Unit vectors (right, up, forward). Raises RayError when eye, target and up give none."""
+        forward = np.subtract(self.target, self.eye)
+        length = np.linalg.norm(forward)
+        if length == 0:
+            raise RayError("camera: eye and target are the same point")
+        forward /= length
+        up = self.up
+        if up is None:
+            up = (0.0, 1.0, 0.0) if abs(forward[2]) > 0.999 else (0.0, 0.0, 1.0)
+        right = np.cross(forward, up)
+        if np.linalg.norm(right) <= 1e-9 * np.linalg.norm(up):
+            raise RayError("camera: up runs along the view; expected another direction")
+        right /= np.linalg.norm(right)
+        return right, np.cross(right, forward), forward
+
+    def view(self, size: tuple[int, int]) -> View:
+        """This camera and the (width, height) of a picture as the kernels take them."""
+        from jaart.core.kernels.pinhole import View
+
+        right, up, forward = (tuple(float(v) for v in vector) for vector in self.frame())
+        across = 2 * math.tan(math.radians(self.fov) / 2) if self.ortho is None else self.ortho
+        return View(self.eye, right, up, forward,  # type: ignore[arg-type]
+                    across / max(size), int(self.ortho is not None), size[0], size[1])
+
+    def rays(self, size: tuple[int, int], pixels: NDArray[np.int64] | None = None) -> tuple[Array, Array]:
+        """Origins and unit directions (R, 3) of the rays through pixel centres.
+
+        size: (width, height) of the picture; pixels: numbers x + y·width counted row by row from the
+        top, all when None.
+        """
+        from jaart.core.kernels.pinhole import write_rays
+
+        numbers = np.arange(size[0] * size[1]) if pixels is None else np.asarray(pixels, dtype=np.int64)
+        origins, directions = np.empty((len(numbers), 3)), np.empty((len(numbers), 3))
+        write_rays(self.view(size), numbers, np.arange(len(numbers)), origins, directions)
+        return origins, directions
+
+    def replace(self, **values: object) -> Camera:
+        """This camera with some values changed."""
+        return dataclasses.replace(self, **values)  # type: ignore[arg-type]
+
+
+def parse(assignments: Iterable[str], base: Camera) -> Camera:
+    """A camera from "eye=x,y,z" texts on top of a base. Raises RayError that names the text."""
+    values: dict[str, object] = {}
+    for text in assignments:
+        name, equals, value = text.partition("=")
+        if not equals or name not in ("eye", "target", "up", "fov", "ortho"):
+            raise RayError(f"--camera {text!r}: expected eye=, target=, up=x,y,z, fov=degrees or ortho=width")
+        values[name] = _vector(name, value.split(",")) if name in ("eye", "target", "up") else _number(name, value)
+    return base.replace(**values)
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise RayError(f"camera {name} = {text!r}: expected a finite number")
+    return value
+
+
+def _vector(name: str, values: Iterable[object]) -> Vector:
+    numbers = [_number(name, str(v)) for v in values]
+    if len(numbers) != 3:
+        raise RayError(f"camera {name}: expected three numbers x,y,z")
+    return numbers[0], numbers[1], numbers[2]

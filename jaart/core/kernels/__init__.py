@@ -1,0 +1,1 @@
+"""The compiled kernels. They import math, numpy, numba and each other, nothing else."""

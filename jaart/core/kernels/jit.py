@@ -1,0 +1,62 @@
+"""How kernels are compiled: without the interpreter's lock, NaN kept, cached by their sources."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+#: Sums may be regrouped so that they vectorise; NaN and infinity keep their meaning.
+VECTOR = {"reassoc", "contract", "nsz", "arcp"}
+#: Nothing may be regrouped: for code that relies on the order of its operations.
+STRICT = {"contract"}
+
+
+def _sources_hash() -> str:
+    """A hash of every kernel's source: numba does not notice a change in a function that is called."""
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(path.read_bytes())
+    digest.update(f"{numba.__version__} {sys.version_info[:2]}".encode())
+    return digest.hexdigest()[:16]
+
+
+def _user_cache() -> Path:
+    from platformdirs import user_cache_path
+
+    return Path(os.environ.get("JAART_CACHE") or user_cache_path("jaart"))
+
+
+#: Where the machine code of these sources is kept.
+CACHE = _user_cache() / f"kernels-{_sources_hash()}"
+
+
+def first_time() -> bool:
+    """Whether the kernels are still to be compiled on this machine."""
+    return not any(CACHE.rglob("*.nbi"))
+
+
+def kernel(flags: set[str] = VECTOR, inline: bool = False) -> Callable[[F], F]:
+    """Compile a function to machine code that releases the interpreter's lock.
+
+    flags: floating-point freedoms, VECTOR or STRICT; inline: also where the compiler would rather call.
+    Division by zero gives infinity or NaN.
+    """
+
+    def compile_into_cache(function: F) -> F:
+        before = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = str(CACHE)
+        try:
+            return numba.njit(function, nogil=True, cache=True, fastmath=flags, error_model="numpy",
+                              forceinline=inline)
+        finally:
+            numba.config.CACHE_DIR = before
+
+    return compile_into_cache

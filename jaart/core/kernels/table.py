@@ -1,0 +1,108 @@
+"""The neighbour table of a lattice (`cell_ball`) and its field of empty space."""
+
+from __future__ import annotations
+
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.records import Array, Cell
+
+Ints = NDArray[np.int32]
+
+
+@kernel(STRICT)
+def near_box(cell: int, offset: float, radius: float, n: int) -> tuple[int, int]:
+    """First and one past the last index along an axis whose cell's centre may lie within radius of a surfel."""
+    return max(cell + int(ceil(offset - radius)), 0), min(cell + int(np.floor(offset + radius)) + 1, n)
+
+
+@kernel(STRICT)
+def count_near(cells: Ints, offsets: Array, radius: float, shape: Cell,
+               first: NDArray[np.int64]) -> None:
+    """Write into first[c + 1] how many surfels lie within radius of the centre of cell c.
+
+    cells, offsets: (N, 3) cell of each surfel and its position relative to that cell's centre.
+    """
+    for s in range(cells.shape[0]):
+        i0, i1 = near_box(cells[s, 0], offsets[s, 0], radius, shape[0])
+        j0, j1 = near_box(cells[s, 1], offsets[s, 1], radius, shape[1])
+        k0, k1 = near_box(cells[s, 2], offsets[s, 2], radius, shape[2])
+        for i in range(i0, i1):
+            x = (cells[s, 0] - i) + offsets[s, 0]
+            for j in range(j0, j1):
+                y = (cells[s, 1] - j) + offsets[s, 1]
+                for k in range(k0, k1):
+                    z = (cells[s, 2] - k) + offsets[s, 2]
+                    if x * x + y * y + z * z <= radius * radius:
+                        first[(i * shape[1] + j) * shape[2] + k + 1] += 1
+
+
+@kernel(STRICT)
+def write_near(cells: Ints, offsets: Array, normals: Array, radius: float, shape: Cell,
+               first: NDArray[np.int64], ids: Ints, columns: Array) -> None:
+    """Write the surfels near each cell, in their own order, and their numbers relative to its centre.
+
+    first, ids, columns: as in records.Cells; ids and columns are written in place.
+    """
+    written = np.zeros(first.shape[0] - 1, np.int32)
+    for s in range(cells.shape[0]):
+        i0, i1 = near_box(cells[s, 0], offsets[s, 0], radius, shape[0])
+        j0, j1 = near_box(cells[s, 1], offsets[s, 1], radius, shape[1])
+        k0, k1 = near_box(cells[s, 2], offsets[s, 2], radius, shape[2])
+        for i in range(i0, i1):
+            x = (cells[s, 0] - i) + offsets[s, 0]
+            for j in range(j0, j1):
+                y = (cells[s, 1] - j) + offsets[s, 1]
+                for k in range(k0, k1):
+                    z = (cells[s, 2] - k) + offsets[s, 2]
+                    if x * x + y * y + z * z <= radius * radius:
+                        c = (i * shape[1] + j) * shape[2] + k
+                        count, at = first[c + 1] - first[c], 6 * first[c] + written[c]
+                        ids[first[c] + written[c]] = s
+                        columns[at], columns[at + count], columns[at + 2 * count] = x, y, z
+                        for axis in range(3):
+                            columns[at + (3 + axis) * count] = normals[s, axis]
+                        written[c] += 1
+
+
+@kernel(STRICT)
+def least_ahead(line: NDArray[np.uint8], i: int) -> int:
+    """The least of max(line[j], |i - j|) over a line: its distances carried along the line to place i."""
+    best, reach = int(line[i]), 1
+    while reach < best:
+        if i >= reach:
+            best = min(best, max(int(line[i - reach]), reach))
+        if i + reach < line.shape[0]:
+            best = min(best, max(int(line[i + reach]), reach))
+        reach += 1
+    return best
+
+
+@kernel(STRICT)
+def fill_empty(empty: NDArray[np.uint8]) -> None:
+    """Turn 0 at cells with a surfel and 255 elsewhere into Chebyshev distances, in place.
+
+    The distances are carried along z, then along y, then along x.
+    """
+    nx, ny, nz = empty.shape
+    line = np.empty(max(nx, max(ny, nz)), np.uint8)
+    for i in range(nx):
+        for j in range(ny):
+            for k in range(nz):
+                line[k] = empty[i, j, k]
+            for k in range(nz):
+                empty[i, j, k] = least_ahead(line[:nz], k)
+        for k in range(nz):
+            for j in range(ny):
+                line[j] = empty[i, j, k]
+            for j in range(ny):
+                empty[i, j, k] = least_ahead(line[:ny], j)
+    for j in range(ny):
+        for k in range(nz):
+            for i in range(nx):
+                line[i] = empty[i, j, k]
+            for i in range(nx):
+                empty[i, j, k] = least_ahead(line[:nx], i)

@@ -1,0 +1,34 @@
+"""Arrays that are used without being counted.
+
+Every use of an array in compiled code counts its users up and down with an atomic instruction; two threads
+that share a scene's arrays then wait for each other at every step of every ray. A view without an owner is
+not counted. It must not outlive the function that was handed the array.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.records import Cells
+
+
+@intrinsic
+def unowned(typing_context: Any, array: Any) -> Any:
+    """The same array without its owner."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        view = context.make_array(array)(context, builder, arguments[0])
+        view.meminfo = cgutils.get_null_value(view.meminfo.type)
+        return view._getvalue()
+
+    return array(array), generate
+
+
+@kernel(STRICT)
+def unowned_cells(cells: Cells) -> Cells:
+    """The cells of a lattice, their arrays without owners."""
+    return Cells(unowned(cells.empty), unowned(cells.first), unowned(cells.ids), unowned(cells.columns))

@@ -1,0 +1,76 @@
+"""How far a picture is from the exact solids: δ, δ_p and δ_n [T 3.4, 3.5]."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jaart.core import prepare, shapes
+from jaart.core.records import STATUS, Hits, Quality
+from jaart.core.scene import Scene, frozen
+
+Array = NDArray[np.float64]
+
+#: A hit farther than this (cells) from the exact one is a distance miss.
+TOO_FAR = 1.0
+
+
+def quality(hits: Hits, scene: Scene) -> Quality | None:
+    """The errors of hits against the scene's solids, or None when it has no exact ones.
+
+    Each false hit, false miss and distance miss adds a penalty of 1 in place of its error. Normals are
+    turned to the viewer first. Rays that cannot be traced (bad_ray) are left out.
+    """
+    solids = prepare.solids(scene, hits.settings)
+    if solids is None:
+        return None
+    good = np.flatnonzero(hits.status != STATUS["bad_ray"])
+    exact_t, exact_normal = np.full(len(hits), np.nan), np.full((len(hits), 3), np.nan)
+    exact_t[good], exact_normal[good] = shapes.first_hit(solids, hits.origin[good], hits.direction[good])
+    return against(hits, exact_t, exact_normal)
+
+
+def against(hits: Hits, exact_t: Array, exact_normal: Array) -> Quality:
+    """The errors of hits against exact ones: t (R,), NaN = no hit, and unit normals (R, 3)."""
+    hit, exact = hits.hit, np.isfinite(exact_t)
+    distance = np.where(hit & exact, np.abs(hits.t - exact_t), np.nan)
+    both = np.flatnonzero(hit & exact)
+    normal = turned(hits.normal[both], hits.direction[both])
+    expected = turned(exact_normal[both], hits.direction[both])
+    angle = np.full(len(hits), np.nan)
+    angle[both] = angles(normal, expected)
+
+    near = distance[both] <= TOO_FAR
+    penalties = (int((hit & ~exact).sum()), int((exact & ~hit).sum()), int((~near).sum()))
+    relevant = int((hit | exact).sum())
+    steepness = np.abs(dots(normal, hits.direction[both]))
+    errors = terms(distance[both], angle[both], steepness)
+    delta, delta_p, delta_n = ((e[near].sum() + sum(penalties)) / relevant if relevant else np.nan for e in errors)
+    return Quality(float(delta), float(delta_p), float(delta_n), relevant, *penalties,
+                   distance=frozen(distance), angle=frozen(angle))
+
+
+def terms(distance: Array, angle: Array, steepness: Array) -> tuple[Array, Array, Array]:
+    """Each ray's share of δ, δ_p and δ_n: ρ_combined [T 3.5], |p_r - p_e| and 1 - <n_r, n_e>.
+
+    distance: cells; angle: degrees; steepness: |<n_r, r>|. 1 - cos α is computed as 2 sin²(α/2).
+    """
+    bent = 2 * np.sin(np.radians(angle) / 2) ** 2
+    return steepness * bent + (1 - steepness) * distance, distance, bent
+
+
+def turned(normals: Array, directions: Array) -> Array:
+    """The normals (R, 3), each turned to where its ray comes from."""
+    return np.where(dots(normals, directions)[:, None] > 0, -normals, normals)
+
+
+def angles(a: Array, b: Array) -> Array:
+    """Angles (R,) in degrees between vectors, exact also where they are small."""
+    angle: Array = np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), dots(a, b))
+    return np.degrees(angle)
+
+
+def dots(a: Array, b: Array) -> Array:
+    """Scalar products (R,) of rows."""
+    products: Array = np.einsum("ij,ij->i", a, b)
+    return products

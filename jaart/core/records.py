@@ -1,0 +1,179 @@
+"""The records that stages hand to each other: frozen, arrays read-only."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jaart.core.camera import Camera
+from jaart.core.settings import Settings
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+#: Named ends of a ray; the position in the tuple is the number in `Hits.status`.
+STATUS_NAMES = ("converged", "background", "cap", "left_trust", "parallel", "few_neighbours",
+                "undefined_normal", "bounded", "floor", "undecided", "bad_ray")
+STATUS = {name: number for number, name in enumerate(STATUS_NAMES)}
+
+
+@dataclass(frozen=True, eq=False)
+class Surfels:
+    """Points with normals, one for each interface cell of a lattice.
+
+    cells: index (N, 3) of each surfel's cell; offset: point minus the cell's centre (N, 3), cells;
+    normal: unit normals (N, 3), out of the fluid; without_normal: interface cells dropped because
+    their gradient vanishes.
+    """
+
+    cells: Ints
+    offset: Array
+    normal: Array
+    without_normal: int = 0
+
+    @property
+    def points(self) -> Array:
+        """Positions (N, 3) in cells."""
+        return self.cells + 0.5 + self.offset
+
+    def __len__(self) -> int:
+        return len(self.cells)
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """One entry for each ray: where it met the surface, and what that took.
+
+    origin, direction: (R, 3); t: distance along the unit direction, NaN = no hit; point, normal: (R, 3),
+    NaN = no hit; energy: length of the last step |e_ts| [T 2.20]; off_centre: |a(x) - x| [T 2.22];
+    iterations: steps of the last start; evaluations: steps of all starts; neighbours: surfels summed
+    over the evaluations; cells: cells visited (skipped ones are not); status: index into STATUS_NAMES.
+    size: (width, height) of a picture, row by row from the top, None for a list of rays.
+    prep_s, ray_s: wall seconds of preparation and of all rays.
+    """
+
+    origin: Array
+    direction: Array
+    t: Array
+    point: Array
+    normal: Array
+    energy: Array
+    off_centre: Array
+    iterations: Ints
+    evaluations: Ints
+    neighbours: Ints
+    cells: Ints
+    status: NDArray[np.uint8]
+    settings: Settings
+    camera: Camera | None = None
+    size: tuple[int, int] | None = None
+    prep_s: float = 0.0
+    ray_s: float = 0.0
+
+    @property
+    def hit(self) -> NDArray[np.bool_]:
+        """Whether each ray met the surface (converged, or stopped at the precision floor)."""
+        return np.isin(self.status, (STATUS["converged"], STATUS["floor"]))
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def counts(self) -> dict[str, int]:
+        """How many rays ended in each state, without the states that none ended in."""
+        numbers = np.bincount(self.status, minlength=len(STATUS_NAMES))
+        return {name: int(n) for name, n in zip(STATUS_NAMES, numbers, strict=True) if n}
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Energies sampled along a ray; NaN where no surfel is near.
+
+    t: (K,); tangent: signed step e_ts [T 2.20]; off_centre: e_oc [T 2.22]; mahalanobis: e_M [T 2.18].
+    """
+
+    t: Array
+    tangent: Array
+    off_centre: Array
+    mahalanobis: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """One ray with every step it took; steps (S) of all starts in order, cells (C) in order.
+
+    origin, direction: (3,); the ray's end: t, point, normal (NaN = no hit), status (a name).
+    For each step: t_query, query x_i; barycentre a(x_i); normal n(x_i); t_next, next_point x_{i+1};
+    energy e_ts (signed); off_centre; weight_sum; start: number of the start it belongs to, from 0;
+    step_cell: cell (S, 3) whose neighbourhood was used; outcome: name of the state that the step led
+    to ("continue" while the search went on); neighbours: indices into surfels; weights: the same
+    length, normalised to sum 1.
+    cells: (C, 3) crossed by the ray; borders: (C + 1,) the t where it crosses into each; with_surfel: (C,).
+    """
+
+    origin: Array
+    direction: Array
+    t: float
+    point: Array
+    normal: Array
+    status: str
+    evaluations: int
+    t_query: Array
+    query: Array
+    barycentre: Array
+    step_normal: Array
+    t_next: Array
+    next_point: Array
+    energy: Array
+    off_centre: Array
+    weight_sum: Array
+    start: Ints
+    step_cell: Ints
+    outcome: tuple[str, ...]
+    neighbours: tuple[NDArray[np.int64], ...]
+    weights: tuple[Array, ...]
+    cells: Ints
+    borders: Array
+    with_surfel: NDArray[np.bool_]
+    surfels: Surfels
+    curves: Curves
+    settings: Settings
+    extent: tuple[float, float, float]
+    pixel: tuple[int, int] | None = None
+
+    @property
+    def steps(self) -> int:
+        """How many steps were taken in all."""
+        return len(self.t_query)
+
+    @property
+    def hit(self) -> bool:
+        """Whether the ray met the surface."""
+        return self.status in ("converged", "floor")
+
+    def summary(self) -> dict[str, Any]:
+        """The ray's end in plain numbers, for a status line."""
+        return {"status": self.status, "t": self.t, "starts": int(self.start[-1]) + 1 if self.steps else 0,
+                "steps": self.steps, "cells": len(self.cells)}
+
+
+@dataclass(frozen=True, eq=False)
+class Quality:
+    """Errors of a picture against the exact solids [T 3.4, 3.5], lengths in cells.
+
+    delta, delta_p, delta_n: NaN when no ray is relevant; relevant: rays that do not correctly show
+    background; false_hit, false_miss, distance_miss: counts; distance, angle: for each ray, NaN where
+    either is missing: |p_r - p_e| in cells and the angle of the normals in degrees.
+    """
+
+    delta: float
+    delta_p: float
+    delta_n: float
+    relevant: int
+    false_hit: int
+    false_miss: int
+    distance_miss: int
+    distance: Array
+    angle: Array

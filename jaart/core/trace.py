@@ -1,0 +1,108 @@
+"""One ray with every step it took, and the energies along it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from jaart.core import prepare
+from jaart.core.errors import RayError
+from jaart.core.kernels import energies, traversal
+from jaart.core.kernels import records as r
+from jaart.core.kernels.ray import trace_ray
+from jaart.core.prepare import Prepared
+from jaart.core.records import STATUS_NAMES, Array, Curves, Trace
+from jaart.core.render import unit
+from jaart.core.scene import Scene, frozen
+from jaart.core.settings import Settings
+from jaart.core.warm import warm_up
+
+#: Samples of the energies in each cell that a ray crosses, its borders included.
+SAMPLES_A_CELL = 12
+
+Ints = NDArray[np.int32]
+
+
+def trace(scene: Scene, settings: Settings, origin: ArrayLike, direction: ArrayLike,
+          pixel: tuple[int, int] | None = None) -> Trace:
+    """Follow one ray and keep every step; its hit has the same bits as `render` gives it.
+
+    origin: (3,) in cells; direction: (3,) of any length; pixel: where it was picked, kept for display.
+    Raises RayError for an origin or a direction that is not finite, or a direction of zero length.
+    """
+    o, d = _ray(origin, direction)
+    warm_up()
+    ready = prepare.prepared(scene, settings)
+    end, rows = _logged(ready, o, d)
+    shape = ready.cells.empty.shape
+    cells, borders = _crossed(o, d, (shape[0], shape[1], shape[2]))
+    near, weights = _neighbours(ready, rows)
+    status, t, point, normal = end[0], end[1], end[2], end[3]
+    return Trace(
+        origin=frozen(o), direction=frozen(d), t=t, point=frozen(point), normal=frozen(normal),
+        status=STATUS_NAMES[status], evaluations=len(rows), t_query=frozen(rows[:, r.T]),
+        query=frozen(rows[:, r.X:r.Z + 1]), barycentre=frozen(rows[:, r.AX:r.AZ + 1]),
+        step_normal=frozen(rows[:, r.NX:r.NZ + 1]), t_next=frozen(rows[:, r.T] + rows[:, r.STEP]),
+        next_point=frozen(rows[:, r.X:r.Z + 1] + rows[:, r.STEP, None] * d), energy=frozen(rows[:, r.STEP]),
+        off_centre=frozen(rows[:, r.OFF]), weight_sum=frozen(np.exp(rows[:, r.WEIGHT])),
+        start=rows[:, r.START].astype(np.int32), step_cell=_step_cells(rows),
+        outcome=tuple("continue" if e == r.CONTINUE else STATUS_NAMES[int(e)] for e in rows[:, r.END]),
+        neighbours=near, weights=weights, cells=cells, borders=frozen(borders),
+        with_surfel=ready.cells.empty[tuple(cells.T)] == 0, surfels=ready.surfels,
+        curves=_curves(ready, settings, o, d, cells, borders), settings=settings,
+        extent=prepare.extent(scene, settings), pixel=pixel)
+
+
+def _ray(origin: ArrayLike, direction: ArrayLike) -> tuple[Array, Array]:
+    o, d = np.array(origin, dtype=np.float64), np.array(direction, dtype=np.float64)
+    for name, vector in (("origin", o), ("direction", d)):
+        if vector.shape != (3,) or not np.isfinite(vector).all():
+            raise RayError(f"ray {name} {vector.tolist()}: expected three finite numbers")
+    if not d.any():
+        raise RayError("ray direction has zero length")
+    return o, unit(d[None])[0]
+
+
+def _logged(ready: Prepared, o: Array, d: Array) -> tuple[r.RayEnd, Array]:
+    """The end of a ray and the log of its steps, in a log that is enlarged until it holds them."""
+    room = 256
+    while True:
+        rows = np.empty((room, r.LOG_WIDTH))
+        end = trace_ray(ready.cells, ready.search, tuple(o.tolist()), tuple(d.tolist()), rows)
+        if end[7] <= room:
+            return end, rows[:end[7]]
+        room = end[7]
+
+
+def _step_cells(rows: Array) -> Ints:
+    return rows[:, r.CELL_I:r.CELL_K + 1].astype(np.int32)
+
+
+def _crossed(o: Array, d: Array, shape: tuple[int, int, int]) -> tuple[Ints, Array]:
+    """All cells (C, 3) that a ray crosses, and the t where it crosses into each and out of the last."""
+    cells, borders = np.empty((sum(shape) + 3, 3), np.int32), np.empty(sum(shape) + 4)
+    n = traversal.crossed(o, d, shape, cells, borders)
+    return cells[:n], borders[:n + 1] if n else borders[:0]
+
+
+def _neighbours(ready: Prepared, rows: Array) -> tuple[tuple[NDArray[np.int64], ...], tuple[Array, ...]]:
+    """For each step the surfels of its neighbourhood and their normalised weights."""
+    ids, weights = [], []
+    for row, cell in zip(rows, _step_cells(rows), strict=True):
+        number = np.ravel_multi_index(cell, ready.cells.empty.shape)
+        first, last = ready.cells.first[number], ready.cells.first[number + 1]
+        ids.append(ready.cells.ids[first:last].astype(np.int64))
+        x, w = row[r.X:r.Z + 1] - (cell + 0.5), np.empty(last - first)
+        energies.write_weights(ready.cells, tuple(cell.tolist()), tuple(x.tolist()), ready.search.h, w)
+        weights.append(frozen(w))
+    return tuple(ids), tuple(weights)
+
+
+def _curves(ready: Prepared, settings: Settings, o: Array, d: Array, cells: Ints, borders: Array) -> Curves:
+    """The energies at evenly spaced points of every cell crossed, with both sides of each border."""
+    share = np.linspace(0.0, 1.0, SAMPLES_A_CELL)
+    ts = (borders[:-1, None] + np.diff(borders)[:, None] * share).ravel() if len(cells) else np.empty(0)
+    values = np.empty((3, len(ts)))
+    energies.sample(ready.cells, ready.search.h, settings.mahalanobis_c, tuple(o.tolist()), tuple(d.tolist()), ts,
+                    np.repeat(cells.astype(np.int64), SAMPLES_A_CELL, axis=0), values)
+    return Curves(frozen(ts), *(frozen(v) for v in values))

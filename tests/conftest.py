@@ -1,0 +1,31 @@
+"""What all tests share: the measured data, where it is there, and how hypothesis searches."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+# The same examples each time: a change that fails was made by a person, not by chance.
+settings.register_profile("jaart", deadline=None, derandomize=True)
+settings.load_profile("jaart")
+
+
+@pytest.fixture(scope="session")
+def data() -> Callable[[str], Path]:
+    """Path of a file of the measured data; the test is skipped where it is absent.
+
+    The folder is named by JAART_DATA, or lies at ../shared/data beside the checkout.
+    """
+    beside = Path(__file__).resolve().parents[2] / "shared" / "data"
+    folder = Path(os.environ.get("JAART_DATA", beside))
+
+    def find(name: str) -> Path:
+        if not (folder / name).is_file():
+            pytest.skip(f"no {name} in {folder}")
+        return folder / name
+
+    return find
