@@ -1,0 +1,20 @@
+"""Start Jaart: `jaart`, or `python -m jaart`."""
+
+from __future__ import annotations
+
+import sys
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line.
+
+    arguments: without the program's name, those of the process when None. Returns the exit status:
+    0 done, 1 could not be done, 2 wrong usage, 130 interrupted.
+    """
+    from jaart.cli import run
+
+    return run(sys.argv[1:] if arguments is None else arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,256 @@
+"""The command line: no arguments or a scene alone open the window, a verb works without one."""
+
+from __future__ import annotations
+
+import json
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Event
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from jaart import cli_arguments as typed
+from jaart import cli_files as files
+from jaart import cli_report as report
+from jaart.core.errors import Cancelled, JaartError, SettingsError
+
+if TYPE_CHECKING:
+    from jaart.core.scene import Scene
+
+SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A file, or a built-in scene: splash, standard.")]
+SizeText = Annotated[str, typer.Option("--size", metavar="WxH", help="Pixels of the picture.")]
+CameraTexts = Annotated[list[str] | None, typer.Option("--camera", metavar="K=V ...", help=(
+    "eye=x,y,z target=x,y,z up=x,y,z fov=degrees (across the longer side) or ortho=width; "
+    "in cells; by default the whole scene in view."))]
+PresetName = Annotated[str, typer.Option("--preset", metavar="NAME", help="Settings to start from: best, thesis.")]
+SetTexts = Annotated[list[str] | None, typer.Option("--set", metavar="K=V ...", help="Single settings on top.")]
+Frame = Annotated[int | None, typer.Option("--frame", min=0, metavar="N", help="Which of a series, from 0.")]
+OutputFile = Annotated[Path | None, typer.Option("--output", "-o", metavar="FILE", help="The picture, .png.")]
+
+#: What the parser raises for wrong usage; it has no public name of its own.
+_USAGE: Any = typer.BadParameter.__mro__[1]
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False,
+                  context_settings={"help_option_names": ["-h", "--help"]})
+
+
+def run(arguments: list[str]) -> int:
+    """Do what the arguments say. Returns the exit status; every error is one line on stderr."""
+    command = typer.main.get_command(app)
+    try:
+        words = typed.complete(arguments, getattr(command, "commands", {}))
+        status = command.main(words, prog_name="jaart", standalone_mode=False)
+    except JaartError as error:
+        return _fail(str(error), 1)
+    except _USAGE as error:
+        message = error.format_message().removeprefix("Invalid value: ")
+        return _fail(f"{message} (jaart -h helps)", 2)
+    except (KeyboardInterrupt, typer.Abort):
+        status = 130
+    except BrokenPipeError:
+        sys.stdout = None  # the reader has left; there is nobody to flush to
+        return 1
+    except OSError as error:
+        return _fail(f"{error.filename or 'system'}: {error.strerror or error}", 1)
+    except MemoryError:
+        return _fail("not enough memory for this scene and size", 1)
+    if status == 130:  # what the parser makes of Ctrl-C as well
+        return _fail("interrupted", 130)
+    return status if isinstance(status, int) else 0
+
+
+@app.callback(invoke_without_command=True)
+def _start(version: Annotated[bool, typer.Option("--version", help="Say the versions and end.")] = False) -> None:
+    """Ray tracing of point-based surfaces, one ray at a time in plain sight.
+
+    No arguments, or a scene alone, open the window.
+    """
+    if version:
+        print(report.versions())
+        raise typer.Exit(0)
+
+
+@app.command()
+def gui(scene: SceneName = "splash",
+        pick: Annotated[str | None, typer.Option(metavar="X,Y", help="Pick this pixel of the picture.")] = None,
+        screenshot: Annotated[Path | None, typer.Option(metavar="FILE", help="Save the window here and end.")] = None,
+        frame: Frame = None, camera: CameraTexts = None, preset: PresetName = "best", set_: SetTexts = None) -> int:
+    """Open the window."""
+    pixel = None if pick is None else typed.pixel(pick, "--pick")
+    settings = typed.settings(preset, set_ or [])
+    if screenshot is not None:
+        typed.output(screenshot, "--screenshot", ".png")
+    view = None
+    if camera or set_:
+        loaded = _load(scene, frame, set_)
+        view = typed.camera(camera, loaded, settings) if camera else None
+
+    from jaart.gui.app import run as open_window
+
+    return open_window(scene, settings, view, pixel, None if screenshot is None else str(screenshot), frame)
+
+
+@app.command()
+def info(scene: SceneName, frame: Frame = None,
+         as_json: Annotated[bool, typer.Option("--json", help="The same for programs.")] = False) -> None:
+    """Say what a scene holds.
+
+    Kind, size, counts, value range, spacing, exact solids, and what was repaired on reading.
+    """
+    from jaart.core.io import load
+    from jaart.core.settings import Settings
+
+    record = report.scene_record(load(scene, frame), Settings())
+    print(json.dumps(record, indent=1, ensure_ascii=False) if as_json else report.scene_table(record))
+
+
+@app.command()
+def render(
+        scene: SceneName, size: SizeText = "512x512", camera: CameraTexts = None, preset: PresetName = "best",
+        set_: SetTexts = None, frame: Frame = None,
+        map_: Annotated[str, typer.Option("--map", metavar="NAME", help=(
+            "What colours mean: shaded, iterations, evaluations, off_centre, depth, status, distance_error, "
+            "normal_error."))] = "shaded",
+        rays: Annotated[Path | None, typer.Option(metavar="FILE", help=(
+            "Trace the origins and directions (R, 3) of this .npz instead of a camera's; needs --hits."))] = None,
+        threads: Annotated[int | None, typer.Option(min=1, metavar="N", help="By default one a core.")] = None,
+        output: OutputFile = None,
+        hits: Annotated[Path | None, typer.Option(metavar="FILE", help="Every ray's hit as arrays, .npz.")] = None,
+        ) -> None:
+    """Render a picture, or trace rays.
+
+    To files; without --output and --hits to SCENE.png in this folder.
+    """
+    if rays is not None:
+        _check_rays_alone(camera, output, hits, map_)
+    elif output is None and hits is None:
+        output = Path(f"{Path(scene).stem or 'scene'}.png")
+    if output is not None:
+        typed.output(output, "--output", ".png")
+    if hits is not None:
+        typed.output(hits, "--hits", ".npz")
+    shape, settings = typed.size(size), typed.settings(preset, set_ or [])
+    loaded = _load(scene, frame, set_)
+    _check_map(map_, loaded)
+    listed = None if rays is None else typed.rays(rays)
+    view = None if rays is not None else typed.camera(camera or [], loaded, settings)
+
+    from jaart.core.quality import quality
+    from jaart.core.render import render as trace_rays
+
+    report.say_compiling()
+    with _interruptible() as cancel, report.progress_bar() as progress:
+        found = trace_rays(loaded, settings, view, shape, rays=listed, threads=threads, progress=progress,
+                           cancel=cancel)
+    errors = quality(found, loaded)
+    print(report.hits_line(found, errors))
+    files.write_render(found, errors, map_, output, hits)
+
+
+@app.command()
+def trace(
+        scene: SceneName,
+        output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help=(
+            "Everything as .json, a row for each step as .csv, or the plots as .svg."))],
+        pixel: Annotated[str | None, typer.Option(metavar="X,Y", help="The ray through this pixel.")] = None,
+        size: SizeText = "512x512", camera: CameraTexts = None,
+        origin: Annotated[str | None, typer.Option(metavar="x,y,z", help="Where the ray begins, in cells.")] = None,
+        direction: Annotated[str | None, typer.Option(metavar="x,y,z", help="Where it goes, of any length.")] = None,
+        preset: PresetName = "best", set_: SetTexts = None, frame: Frame = None) -> None:
+    """Follow one ray and write every step it took."""
+    at, ray = _which_ray(pixel, origin, direction)
+    typed.output(output, "--output", ".json", ".csv", ".svg")
+    shape, settings = typed.size(size), typed.settings(preset, set_ or [])
+    if at is not None:
+        typed.check_pixel(at, shape)
+    elif camera:
+        raise typed.usage("--camera", "has no meaning with --origin and --direction")
+    loaded, up = _load(scene, frame, set_), (0.0, 0.0, 1.0)
+
+    from jaart.core.trace import trace as follow
+
+    if at is not None:
+        view = typed.camera(camera or [], loaded, settings)
+        ray, up = typed.pixel_ray(view, shape, at), view.up or up
+    assert ray is not None
+    report.say_compiling()
+    followed = follow(loaded, settings, *ray, pixel=at)
+    files.write_trace(followed, output, up)
+    print(report.trace_line(followed))
+    print(f"wrote {output}")
+
+
+@app.command(hidden=True)
+def preview(scene: SceneName,
+            output: Annotated[Path, typer.Option("--output", metavar="FOLDER", help="Made when absent.")]) -> None:
+    """Render a scene's picture, and the plots of the ray through its middle, to files in a folder."""
+    from jaart.cli_preview import write_preview
+
+    report.say_compiling()
+    loaded = _load(scene, None)
+    output.mkdir(parents=True, exist_ok=True)
+    for path in write_preview(loaded, output):
+        print(f"wrote {path}")
+
+
+def _load(source: str, frame: int | None, assignments: list[str] | None = None) -> Scene:
+    from jaart.core.io import load
+
+    scene = load(source, frame)
+    typed.check_meaning(assignments or [], scene)
+    for note in scene.notes:
+        print(f"jaart: note: {note}", file=sys.stderr)
+    return scene
+
+
+def _check_rays_alone(camera: list[str] | None, output: Path | None, hits: Path | None, map_: str) -> None:
+    if hits is None:
+        raise typed.usage("--rays", "needs --hits FILE.npz to write to")
+    for option, given in (("--camera", camera), ("--output", output), ("--map", map_ != "shaded")):
+        if given:
+            raise typed.usage(option, "has no meaning with --rays, which make no picture")
+
+
+def _check_map(name: str, scene: Scene) -> None:
+    from jaart.core.maps import find
+
+    find(name)
+    if name.endswith("_error") and scene.model is None:
+        raise SettingsError(f"map {name}: needs exact solids, which {scene.source} has not")
+
+
+def _which_ray(pixel: str | None, origin: str | None,
+               direction: str | None) -> tuple[tuple[int, int] | None, typed.Ray | None]:
+    """The pixel, or origin and direction: whichever was typed."""
+    if pixel is not None and origin is None and direction is None:
+        return typed.pixel(pixel, "--pixel"), None
+    if pixel is None and origin is not None and direction is not None:
+        return None, (typed.vector(origin, "--origin"), typed.vector(direction, "--direction"))
+    raise typed.usage("--pixel", "expected either --pixel X,Y or both --origin and --direction x,y,z")
+
+
+@contextmanager
+def _interruptible() -> Iterator[Event]:
+    """An event that Ctrl-C sets before it is raised, so that no thread works on."""
+    cancel = Event()
+
+    def stop(*_: object) -> None:
+        cancel.set()
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, stop)
+    try:
+        yield cancel
+    except Cancelled:
+        raise KeyboardInterrupt from None
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _fail(message: str, status: int) -> int:
+    print(f"jaart: {' '.join(message.split())}", file=sys.stderr)
+    return status

@@ -1,0 +1,125 @@
+"""What the commands say: a table of a scene, a line on a picture or a ray, and progress."""
+
+from __future__ import annotations
+
+import platform
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import jaart
+
+if TYPE_CHECKING:
+    from jaart.core.records import Hits, Quality, Trace
+    from jaart.core.scene import Scene
+    from jaart.core.settings import Settings
+
+
+def versions() -> str:
+    """The version, and those of what decides its results and its safety."""
+    from pyexpat import EXPAT_VERSION
+
+    return (f"jaart {jaart.__version__}\npython {platform.python_version()}, numpy {version('numpy')}, "
+            f"numba {version('numba')}, {EXPAT_VERSION.replace('_', ' ')}")
+
+
+def scene_record(scene: Scene, settings: Settings) -> dict[str, Any]:
+    """What a scene holds, in plain numbers and words; lengths in cells, spacing and origin as in the file."""
+    from jaart.core import lattice, prepare
+
+    levels = prepare.levels(scene, settings)
+    surfels = prepare.surfels(scene, settings)
+    interface = lattice.interface_cells(levels, settings.neighbours, settings.border)
+    solids = None if scene.model is None else [_solid(s) for s in scene.model.solids]
+    return {
+        "source": scene.source, "kind": scene.kind, "size": list(levels.shape), "cells": int(levels.size),
+        "interface_cells": int(interface.sum()), "surfels": len(surfels), "without_normal": surfels.without_normal,
+        "levels": [float(levels.min()), float(levels.max())], "spacing": list(scene.spacing),
+        "origin": list(scene.origin), "frame": scene.frame, "frames": scene.frames, "time": scene.time,
+        "solids": solids, "notes": list(scene.notes),
+    }
+
+
+def scene_table(record: dict[str, Any]) -> str:
+    """The same for people."""
+    time = "" if record["time"] is None else f", {record['time']:g} s"
+    rows = [
+        ("kind", record["kind"]),
+        ("size", "×".join(str(n) for n in record["size"]) + f" = {record['cells']} cells"),
+        ("interface cells", record["interface_cells"]),
+        ("surfels", f"{record['surfels']}, {record['without_normal']} interface cells without a normal"),
+        ("levels", "{:g} to {:g}".format(*record["levels"])),
+        ("spacing", " × ".join(f"{v:g}" for v in record["spacing"])),
+        ("origin", ", ".join(f"{v:g}" for v in record["origin"])),
+        ("frame", f"{record['frame']} of 0 to {record['frames'] - 1}{time}"),
+        *(("exact solid", " ".join(f"{k} {_words(v)}" for k, v in s.items())) for s in record["solids"] or ()),
+        *(("note", note) for note in record["notes"]),
+    ]
+    return "\n".join([record["source"], *(f"  {name:<16} {value}" for name, value in rows)])
+
+
+def hits_line(hits: Hits, quality: Quality | None = None) -> str:
+    """One line on a picture or a list of rays, and how the rays ended."""
+    evaluations = hits.evaluations.sum() / max(1, len(hits))
+    shape = f"{hits.size[0]}x{hits.size[1]}: " if hits.size else ""
+    ends = ", ".join(f"{count} {name}" for name, count in hits.counts().items())
+    exact = "" if quality is None else (
+        f"\n  against the exact solids: delta {quality.delta:.4f}, delta_p {quality.delta_p:.4f} cells, "
+        f"delta_n {quality.delta_n:.4f}")
+    return (f"{shape}{int(hits.hit.sum())} of {len(hits)} rays hit, {evaluations:.2f} evaluations a ray, "
+            f"prepared in {1000 * hits.prep_s:.0f} ms, traced in {1000 * hits.ray_s:.0f} ms\n  {ends}{exact}")
+
+
+def trace_line(trace: Trace) -> str:
+    """One line on a picked ray."""
+    s = trace.summary()
+    name = "ray" if trace.pixel is None else f"pixel {trace.pixel[0]},{trace.pixel[1]}"
+    at = f" at t = {s['t']:.6g}, point {_words(trace.point)}" if trace.hit else ""
+    return f"{name}: {s['status']}{at}; {_count(s['steps'], 'step')} from {_count(s['starts'], 'start')}, " \
+           f"{_count(s['cells'], 'cell')} crossed"
+
+
+def say_compiling() -> None:
+    """Say on stderr, the first time on a machine, why nothing happens for some seconds."""
+    from jaart.core.warm import needs_compile
+
+    if needs_compile():
+        print("Compiling the kernels for this machine, once; this takes about ten seconds.", file=sys.stderr)
+
+
+@contextmanager
+def progress_bar() -> Iterator[Callable[[int, int], None] | None]:
+    """A bar on a terminal for work of over a second, None elsewhere."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from tqdm import tqdm
+
+    with tqdm(unit="ray", unit_scale=True, delay=1.0, leave=False) as bar:
+        def progress(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        yield progress
+
+
+def _solid(solid: Any) -> dict[str, Any]:
+    import dataclasses
+
+    return {"shape": type(solid).__name__, **{k: _plain(v) for k, v in dataclasses.asdict(solid).items()}}
+
+
+def _plain(value: Any) -> Any:
+    return float(value) if isinstance(value, int | float) else [float(v) for v in value]
+
+
+def _words(value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    return f"{value:g}" if isinstance(value, float) else "(" + ", ".join(f"{v:g}" for v in value) + ")"
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

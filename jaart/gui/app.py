@@ -1,0 +1,92 @@
+"""Starting the window, or taking a picture of it."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import sys
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jaart.core.camera import Camera
+from jaart.core.errors import JaartError
+from jaart.core.settings import Settings
+from jaart.gui.libraries import check
+
+if TYPE_CHECKING:
+    from qtpy.QtCore import Qt
+
+    from jaart.gui.main_window import MainWindow
+
+#: What is opened when nothing is named, or when what was named cannot be read.
+SAMPLE = "splash"
+
+
+def run(source: str | PathLike[str] | None = None, settings: Settings | None = None, camera: Camera | None = None,
+        pick: tuple[int, int] | None = None, screenshot: str | PathLike[str] | None = None,
+        frame: int | None = None) -> int:
+    """Open the window and return the exit status when it closes.
+
+    source: a file or a built-in name, the sample when None; pick: pixel (x, y) of the picture;
+    screenshot: save the window there once everything is drawn, and end. Raises JaartError without a
+    display or a system library, and, with screenshot, for what cannot be shown.
+    """
+    check()
+    logging.basicConfig(format="%(name)s: %(message)s")
+    sys.setswitchinterval(0.001)
+    from qtpy.QtCore import QEventLoop
+    from qtpy.QtWidgets import QApplication
+
+    from jaart.gui.main_window import MainWindow
+    from jaart.gui.model import PICTURE
+    from jaart.gui.screenshot import Screenshot
+
+    _check_pick(pick, PICTURE)
+    app = QApplication.instance() or QApplication(["jaart"])
+    app.setApplicationName("Jaart")
+    window, loop = MainWindow(), QEventLoop()
+    window.model.set_settings(settings or Settings())
+    window.closed.connect(loop.quit)
+    problems: list[str] = []
+    if screenshot is None:
+        fall_back_on_sample(window)
+    else:
+        window.model.failed.connect(problems.append)
+        window.model.failed.connect(window.close)
+        shot = Screenshot(window, Path(screenshot), pick is not None)
+        shot.taken.connect(window.close)
+    if pick is not None:
+        window.model.scene_changed.connect(lambda: window.model.pick(*pick), _once())
+    interrupt = signal.signal(signal.SIGINT, signal.SIG_DFL)  # Qt's loop would not let Python answer Ctrl-C
+    window.show()
+    window.model.open(source or SAMPLE, frame, camera)
+    loop.exec()
+    signal.signal(signal.SIGINT, interrupt)
+    if problems:
+        raise JaartError(problems[0])
+    return 0
+
+
+def _check_pick(pick: tuple[int, int] | None, size: tuple[int, int]) -> None:
+    if pick is not None and not (0 <= pick[0] < size[0] and 0 <= pick[1] < size[1]):
+        raise JaartError(f"--pick {pick[0]},{pick[1]}: expected a pixel of the picture, "
+                         f"0,0 to {size[0] - 1},{size[1] - 1}")
+
+
+def fall_back_on_sample(window: MainWindow) -> None:
+    """Open the sample when the first scene cannot be read, and leave the reason standing."""
+    model = window.model
+
+    def failed(message: str) -> None:
+        if model.scene is None:
+            model.scene_changed.connect(lambda: window.message.tell(message), _once())
+            model.open(SAMPLE)
+
+    model.failed.connect(failed, _once())
+
+
+def _once() -> Qt.ConnectionType:
+    from qtpy.QtCore import Qt
+
+    return Qt.ConnectionType.SingleShotConnection

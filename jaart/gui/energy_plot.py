@@ -1,0 +1,57 @@
+"""The energies along the picked ray, with its steps."""
+
+from __future__ import annotations
+
+from qtpy.QtGui import QResizeEvent
+from qtpy.QtWidgets import QToolButton, QWidget
+
+from jaart.gui.figure_canvas import FigurePanel
+from jaart.gui.model import SceneModel
+from jaart.plot.energy import draw_energy
+from jaart.plot.style import THEMES, blank
+
+
+class EnergyPlot(FigurePanel):
+    """e_ts, e_oc and e_M along the picked ray."""
+
+    message = "Click a pixel in the picture to see the energies along its ray."
+
+    def __init__(self, model: SceneModel, parent: QWidget | None = None) -> None:
+        super().__init__(model, parent)
+        self.whole = QToolButton(self.canvas)
+        self.whole.setText("whole ray")
+        self.whole.setCheckable(True)
+        self.whole.hide()
+        self.whole.setToolTip("Show the energies from the first cell to the last.\n"
+                              "Wheel: zoom. Drag: move. Double click: back.")
+        self.whole.toggled.connect(self.new_view)
+        model.trace_changed.connect(self.new_trace)
+        model.step_changed.connect(self.mark_dirty)
+
+    def draw(self) -> None:
+        """Draw the picked ray's energies."""
+        trace = self.model.trace
+        self.whole.setVisible(trace is not None and bool(len(trace.cells)))
+        if trace is None:
+            self.canvas.say(self.message)
+            return
+        figure = self.canvas.figure
+        kept = (figure.axes[0].get_xlim(), figure.axes[0].get_ylim()) if self.canvas.zoomed and figure.axes else None
+        blank(figure, THEMES[self.model.theme])
+        axes = figure.add_subplot()
+        spots = draw_energy(axes, trace, self.model.step, self.model.theme, self.whole.isChecked())
+        if kept is not None:
+            axes.set_xlim(kept[0])
+            axes.set_ylim(kept[1])
+        self.canvas.show_figure(axes, spots)
+        self.whole.raise_()
+        self._place()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Keep the button in its corner."""
+        super().resizeEvent(event)
+        self._place()
+
+    def _place(self) -> None:
+        self.whole.adjustSize()
+        self.whole.move(self.width() - self.whole.width() - 6, 2)

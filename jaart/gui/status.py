@@ -1,0 +1,69 @@
+"""The status bar: how far the picture is, and its numbers."""
+
+from __future__ import annotations
+
+from qtpy.QtCore import QTimer
+from qtpy.QtWidgets import QLabel, QProgressBar, QStatusBar, QWidget
+
+from jaart.gui.model import SceneModel
+from jaart.gui.theme import tabular
+
+
+class Status(QStatusBar):
+    """Progress on the left, rays hit, evaluations a ray, time and δ on the right."""
+
+    def __init__(self, model: SceneModel, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.model = model
+        self.setSizeGripEnabled(False)
+        self.bar = QProgressBar(maximum=100, textVisible=False)
+        self.bar.setFixedSize(120, 8)
+        self.state = QLabel()
+        self.figures = QLabel(objectName="figures")
+        self.figures.setFont(tabular(self.figures.font()))
+        self.setContentsMargins(8, 0, 8, 0)
+        self.addWidget(self.bar)
+        self.addWidget(self.state, 1)
+        self.addPermanentWidget(self.figures)
+        self._late = QTimer(self, singleShot=True, interval=200)
+        self._late.timeout.connect(lambda: self._progress(0.0))
+        model.progressed.connect(self._progress)
+        model.said.connect(self.state.setText)
+        model.hits_changed.connect(self.refresh)
+        model.settled.connect(self._settled)
+        for signal in (model.settings_changed, model.camera_changed):
+            signal.connect(self._late.start)
+        self._settled()
+
+    def refresh(self) -> None:
+        """Show the numbers of a full picture."""
+        if self.model.complete:
+            self.figures.setText("      ".join(figures(self.model)))
+        elif self.model.hits is None:
+            self.figures.setText("")
+
+    def _progress(self, share: float) -> None:
+        if self.model.idle:
+            return
+        self.bar.setVisible(share < 1)
+        self.bar.setValue(round(100 * share))
+        if share:
+            self.state.setText(f"Tracing rays … {100 * share:.0f} %")
+
+    def _settled(self) -> None:
+        self._late.stop()
+        self.bar.hide()
+        width, height = self.model.size
+        self.state.setText(f"Picture of {width} × {height} rays" if self.model.complete else "")
+
+
+def figures(model: SceneModel) -> list[str]:
+    """The numbers of the model's picture, one text each."""
+    hits, quality = model.hits, model.quality
+    if hits is None:
+        return []
+    texts = [f"{100 * hits.hit.mean():.1f} % of rays hit", f"{hits.evaluations.mean():.2f} evaluations/ray",
+             f"{1000 * hits.ray_s:.0f} ms"]
+    if quality is not None:
+        texts.append(f"δ {quality.delta:.4f}   δp {quality.delta_p:.4f}   δn {quality.delta_n:.4f}")
+    return texts

@@ -1,0 +1,168 @@
+"""One thread that computes for the window: the newest job of each kind wins."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from qtpy.QtCore import QObject, Qt, Signal
+
+from jaart.core.errors import Cancelled, JaartError
+
+log = logging.getLogger("jaart")
+
+#: Kinds of jobs, the most urgent first.
+KINDS = ("open", "picture", "trace")
+
+
+class Job:
+    """Work to be done in the worker's thread; `done` and `partial` are called in the window's.
+
+    kind: one of KINDS; work(job) -> result: may call job.progress and job.partial and give job.cancel on;
+    brief: so short that it runs to its end even when newer work waits.
+    """
+
+    def __init__(self, worker: Worker, kind: str, work: Callable[[Job], Any], done: Callable[[Any], None],
+                 partial: Callable[[Any], None] | None, brief: bool) -> None:
+        self.kind, self.work, self.done, self.on_partial, self.brief = kind, work, done, partial, brief
+        self.cancel = threading.Event()
+        self._post, self._superseded, self._shown, self._told = worker.posted.emit, False, False, 0.0
+
+    def supersede(self) -> None:
+        """Stop for a newer job, but not before something was shown: endless dragging must not starve the view."""
+        self._superseded = not self.brief
+        if self._superseded and (self._shown or self.on_partial is None):
+            self.cancel.set()
+
+    def progress(self, done: int, total: int) -> None:
+        """Tell how much is done, at most ten times a second."""
+        now = time.monotonic()
+        if now - self._told > 0.1:
+            self._told = now
+            self._post(self, "progress", done / max(total, 1))
+
+    def say(self, text: str) -> None:
+        """Tell what goes on."""
+        self._post(self, "said", text)
+
+    def partial(self, result: Any) -> None:
+        """Hand over a first, coarse result."""
+        self._post(self, "partial", result)
+        self._shown = True
+        if self._superseded:
+            self.cancel.set()
+
+
+class Worker(QObject):
+    """Runs jobs one after the other in a thread of its own and reports in the window's thread."""
+
+    progressed = Signal(float)
+    failed = Signal(str)
+    said = Signal(str)
+    ended = Signal()
+    posted = Signal(object, str, object)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._waiting: dict[str, Job] = {}
+        self._running: Job | None = None
+        self._open: set[Job] = set()
+        self._stop = False
+        self._change = threading.Condition()
+        self.posted.connect(self._deliver, Qt.ConnectionType.QueuedConnection)
+        self._thread = threading.Thread(target=self._loop, name="jaart worker", daemon=True)
+        self._thread.start()
+
+    @property
+    def idle(self) -> bool:
+        """Whether every job has ended and its result was delivered."""
+        return not self._open
+
+    def submit(self, kind: str, work: Callable[[Job], Any], done: Callable[[Any], None],
+               partial: Callable[[Any], None] | None = None, brief: bool = False) -> None:
+        """Queue a job in the place of any waiting one of its kind; a running one makes way unless it is brief."""
+        job = Job(self, kind, work, done, partial, brief)
+        with self._change:
+            self._drop(kind)
+            if self._running is not None and self._running.kind == kind:
+                self._running.supersede()
+            self._waiting[kind] = job
+            self._open.add(job)
+            self._change.notify()
+
+    def cancel(self, kind: str) -> None:
+        """Stop the running job of a kind and forget the waiting one."""
+        with self._change:
+            self._drop(kind)
+            if self._running is not None and self._running.kind == kind:
+                self._running.cancel.set()
+
+    def stop(self) -> None:
+        """End the thread: cancel what runs, forget what waits, and wait for the thread."""
+        with self._change:
+            self._stop = True
+            for kind in KINDS:
+                self._drop(kind)
+            if self._running is not None:
+                self._running.cancel.set()
+            self._change.notify()
+        self._thread.join()
+        self._open.clear()
+
+    def _drop(self, kind: str) -> None:
+        self._open.discard(self._waiting.pop(kind, None))  # type: ignore[arg-type]
+
+    def _loop(self) -> None:
+        while (job := self._next()) is not None:
+            what, result = _outcome(job)
+            with self._change:
+                self._running = None
+                if self._stop:
+                    return
+            self.posted.emit(job, what, result)
+
+    def _next(self) -> Job | None:
+        with self._change:
+            self._change.wait_for(lambda: self._stop or self._waiting)
+            if self._stop:
+                return None
+            self._running = self._waiting.pop(min(self._waiting, key=KINDS.index))
+            return self._running
+
+    def _deliver(self, job: Job, what: str, result: Any) -> None:
+        if what in ("done", "failed", "cancelled"):
+            self._open.discard(job)
+        if not (self._stop or (job.cancel.is_set() and what != "partial")):
+            self._hand_over(job, what, result)
+        if self.idle:
+            self.ended.emit()
+
+    def _hand_over(self, job: Job, what: str, result: Any) -> None:
+        if what == "done":
+            job.done(result)
+        elif what == "partial" and job.on_partial is not None:
+            job.on_partial(result)
+        elif what == "failed":
+            self.failed.emit(result)
+        elif what == "said":
+            self.said.emit(result)
+        elif what == "progress":
+            self.progressed.emit(result)
+
+
+def _outcome(job: Job) -> tuple[str, Any]:
+    """Run a job: what came of it, and its result or message."""
+    try:
+        return "done", job.work(job)
+    except Cancelled:
+        return "cancelled", None
+    except JaartError as error:
+        return "failed", str(error)
+    except MemoryError:
+        return "failed", "not enough memory for this; choose a smaller raster or picture"
+    except Exception as error:
+        log.exception("%s failed", job.kind)
+        return "failed", f"internal error: {type(error).__name__}: {error}"

@@ -1,0 +1,61 @@
+"""A window with a scene in it; closed, joined and forgotten after each test."""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("QT_API", "pyside6")
+
+import pytest
+from qtpy.QtCore import QCoreApplication, QEvent
+
+from jaart.gui.main_window import MainWindow
+from jaart.gui.model import SceneModel
+
+#: Longest wait for a picture or a panel, the first compilation of all kernels included [ms].
+PATIENCE = 60_000
+
+
+def settle(qtbot, model):
+    """Wait until everything that was asked for is done."""
+    qtbot.waitUntil(lambda: model.idle, timeout=PATIENCE)
+
+
+@pytest.fixture
+def model(qtbot):
+    """A scene model without a scene."""
+    model = SceneModel()
+    yield model
+    model.close()
+    forget(model)
+
+
+@pytest.fixture
+def standard(qtbot, model):
+    """A scene model with the standard scene in a small picture."""
+    model.set_size(96, 96)
+    model.open("standard")
+    settle(qtbot, model)
+    assert model.complete
+    return model
+
+
+@pytest.fixture
+def window(qtbot):
+    """The window with the standard scene, all panels built."""
+    window = MainWindow()
+    window.model.set_size(192, 192)
+    window.show()
+    qtbot.waitExposed(window)
+    window.model.open("standard")
+    qtbot.waitUntil(lambda: window.model.idle and window.panels_ready, timeout=PATIENCE)
+    yield window
+    window.close()
+    forget(window)
+
+
+def forget(thing):
+    """Delete a Qt object now, not at some later turn of the event loop."""
+    thing.deleteLater()
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    QCoreApplication.processEvents()

@@ -1,0 +1,201 @@
+"""The form: every control writes what it shows, shows what the model holds, and refuses in words."""
+
+from __future__ import annotations
+
+import pytest
+from qtpy.QtCore import Qt
+from qtpy.QtTest import QTest
+
+from jaart.core.parameter import Length
+from jaart.core.settings import PARAMETERS, Settings
+from jaart.gui.form import ChoiceRow, FlagRow, NumberRow, VectorRow, make_row, slider_span
+from jaart.gui.model import SceneModel
+from jaart.gui.parameters import OWN, Parameters
+
+
+@pytest.fixture
+def form(qtbot, model: SceneModel):
+    form = Parameters(model)
+    qtbot.addWidget(form)
+    form.resize(300, 900)
+    form.show()
+    qtbot.waitExposed(form)
+    return form
+
+
+def type_into(box, text):
+    box.setFocus()
+    box.lineEdit().selectAll()
+    QTest.keyClicks(box.lineEdit(), text)
+    QTest.keyClick(box.lineEdit(), Qt.Key.Key_Return)
+
+
+def test_every_parameter_with_a_choice_has_a_row_and_no_other(form):
+    fixed = {p.name for p in PARAMETERS.values() if p.kind == "choice" and len(p.choices) == 1}
+    assert set(form.rows) == set(PARAMETERS) - fixed
+
+
+@pytest.mark.parametrize(("name", "kind"), [("h", NumberRow), ("bail", ChoiceRow), ("light", VectorRow),
+                                            ("max_iterations", NumberRow)])
+def test_kinds_have_their_controls(form, name, kind):
+    assert type(form.rows[name]) is kind
+
+
+def test_a_typed_value_is_taken(form, model):
+    type_into(form.rows["h"].box, "1.25")
+    assert model.settings.h == Length(1.25)
+
+
+def test_a_typed_unit_is_kept(form, model):
+    type_into(form.rows["h"].box, "0.01d")
+    assert model.settings.h == Length(0.01, "d")
+    assert form.rows["h"].box.text() == "0.01d"
+
+
+@pytest.mark.parametrize("text", ["-1", "0", "wide", "nan", "inf", "1e9", ""])
+def test_a_bad_value_is_refused_beside_its_control(form, model, text):
+    row = form.rows["h"]
+    row.box.lineEdit().selectAll()
+    QTest.keyClick(row.box.lineEdit(), Qt.Key.Key_Delete)
+    type_into(row.box, text)
+    assert model.settings == Settings()
+    assert row.fault.isVisible()
+    assert row.fault.text().startswith("h = ")
+    type_into(row.box, "0.9")
+    assert not row.fault.isVisible()
+    assert model.settings.h == Length(0.9)
+
+
+def test_a_slider_writes_and_follows(form, model):
+    row = form.rows["h"]
+    row.slider.setValue(row.slider.value() + 4)
+    assert model.settings.h == Length(1.0)
+    assert row.box.text() == "1"
+    model.set_value("h", 0.5)
+    assert row.slider.value() == round((0.5 - row.low) / 0.05)
+
+
+def test_a_slider_writes_once_and_hears_no_echo(form, model, qtbot):
+    changes = []
+    model.settings_changed.connect(lambda: changes.append(model.settings.h.value))
+    form.rows["h"].slider.setValue(form.rows["h"].slider.value() + 1)
+    assert changes == [0.85]
+
+
+def test_a_value_beyond_the_slider_is_kept_as_it_was_typed(form, model):
+    type_into(form.rows["h"].box, "123.456")
+    assert model.settings.h == Length(123.456)
+    assert form.rows["h"].box.text() == "123.456"
+
+
+def test_arrow_keys_step_a_number_within_its_bounds(form, model):
+    box = form.rows["max_iterations"].box
+    QTest.keyClick(box, Qt.Key.Key_Up)
+    assert model.settings.max_iterations == 21
+    model.set_value("max_iterations", 1)
+    QTest.keyClick(box, Qt.Key.Key_Down)
+    assert model.settings.max_iterations == 1
+
+
+def test_a_word_is_a_box_to_tick(form, model):
+    row = form.rows["trust"]
+    assert row.word.isChecked()
+    assert not row.box.isEnabled()
+    row.word.click()
+    assert model.settings.trust == Length(2.0)
+    assert row.box.isEnabled()
+    row.word.click()
+    assert model.settings.trust == "radius"
+
+
+def test_a_word_shows_the_number_that_it_stands_for(form, model):
+    model.set_value("radius", 3.0)
+    assert form.rows["trust"].box.text() == "3"
+
+
+def test_a_vector_is_typed_in_three_boxes(form, model):
+    row = form.rows["light"]
+    row.word.click()
+    for box, text in zip(row.boxes, ("1", "2.5", "-3"), strict=True):
+        type_into(box, text)
+    assert model.settings.light == (1.0, 2.5, -3.0)
+    type_into(row.boxes[1], "up")
+    assert row.fault.isVisible()
+    assert model.settings.light == (1.0, 2.5, -3.0)
+
+
+def test_a_choice_writes_what_is_chosen(form, model, qtbot):
+    combo = form.rows["bail"].combo
+    combo.setFocus()
+    QTest.keyClick(combo, Qt.Key.Key_Down)
+    assert model.settings.bail == "growth"
+
+
+def test_what_does_not_matter_is_hidden(form, model):
+    assert form.rows["specular"].isVisibleTo(form)
+    model.set_value("shading", "diffuse")
+    assert not form.rows["specular"].isVisibleTo(form)
+
+
+def test_the_model_group_is_shown_for_models_only(form, model, standard):
+    group = next(s for s in form.sections if s.title == "Model")
+    assert group.isVisibleTo(form)
+    assert form.rows["raster"].box.text() == "16"
+
+
+def test_without_a_model_its_group_is_hidden(form):
+    assert not next(s for s in form.sections if s.title == "Model").isVisibleTo(form)
+
+
+def test_reset_goes_back_to_the_default(form, model):
+    row = form.rows["tolerance"]
+    assert not row.reset.isVisible()
+    type_into(row.box, "0.2")
+    assert row.reset.isVisible()
+    row.reset.click()
+    assert model.settings.tolerance == PARAMETERS["tolerance"].default
+    assert not row.reset.isVisible()
+
+
+def test_a_preset_sets_all_values(form, model):
+    type_into(form.rows["h"].box, "1.1")
+    assert form.presets.currentText() == OWN
+    form.presets.setCurrentText("thesis")
+    form.presets.activated.emit(form.presets.currentIndex())
+    assert model.settings == Settings()
+    assert form.presets.currentText() == "thesis"
+
+
+def test_a_section_folds(form):
+    section = form.sections[0]
+    section.heading.click()
+    assert not section.body.isVisible()
+    section.heading.click()
+    assert section.body.isVisible()
+
+
+def test_tips_say_what_may_be_typed_and_where_it_comes_from(form):
+    tip = form.rows["h"].toolTip()
+    for part in ("Width of the weight", "[T 2.7]", "d (diagonals)", "--set h=0.8"):
+        assert part in tip
+
+
+@pytest.mark.parametrize("about", [p for p in PARAMETERS.values() if p.kind in ("number", "integer", "length")],
+                         ids=lambda p: p.name)
+def test_every_place_of_a_slider_is_a_value(about):
+    low, steps = slider_span(about)
+    assert steps >= 4
+    for at in (0, 1, steps):
+        about.check(round(low + at * about.step, 9))
+
+
+def test_a_flag_is_a_check_box(qtbot):
+    from dataclasses import replace
+
+    row = make_row(replace(PARAMETERS["bail"], kind="flag", default=False, choices=(), name="shadows"))
+    qtbot.addWidget(row)
+    entered = []
+    row.entered.connect(lambda name, value: entered.append((name, value)))
+    assert isinstance(row, FlagRow)
+    row.check.click()
+    assert entered == [("shadows", True)]
