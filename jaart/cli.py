@@ -21,6 +21,9 @@ from jaart.core.errors import Cancelled, JaartError, SettingsError
 if TYPE_CHECKING:
     from jaart.core.scene import Scene
 
+#: Pixels of a picture when nobody says.
+DEFAULT_SIZE = "512x512"
+
 SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A file, or a built-in scene: splash, standard.")]
 SizeText = Annotated[str, typer.Option("--size", metavar="WxH", help="Pixels of the picture.")]
 CameraTexts = Annotated[list[str] | None, typer.Option("--camera", metavar="K=V ...", help=(
@@ -110,7 +113,7 @@ def info(scene: SceneName, frame: Frame = None,
 
 @app.command()
 def render(
-        scene: SceneName, size: SizeText = "512x512", camera: CameraTexts = None, preset: PresetName = "best",
+        scene: SceneName, size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None, preset: PresetName = "best",
         set_: SetTexts = None, frame: Frame = None,
         map_: Annotated[str, typer.Option("--map", metavar="NAME", help=(
             "What colours mean: shaded, iterations, evaluations, off_centre, depth, status, distance_error, "
@@ -127,6 +130,8 @@ def render(
     """
     if rays is not None:
         _check_rays_alone(camera, output, hits, map_)
+        if size != DEFAULT_SIZE:
+            print("jaart: note: --size has no meaning with --rays", file=sys.stderr)
     elif output is None and hits is None:
         output = Path(f"{Path(scene).stem or 'scene'}.png")
     if output is not None:
@@ -137,7 +142,7 @@ def render(
     loaded = _load(scene, frame, set_)
     _check_map(map_, loaded)
     listed = None if rays is None else typed.rays(rays)
-    view = None if rays is not None else typed.camera(camera or [], loaded, settings)
+    view = None if rays is not None else typed.camera(camera or [], loaded, settings, shape)
 
     from jaart.core.quality import quality
     from jaart.core.render import render as trace_rays
@@ -157,7 +162,7 @@ def trace(
         output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help=(
             "Everything as .json, a row for each step as .csv, or the plots as .svg."))],
         pixel: Annotated[str | None, typer.Option(metavar="X,Y", help="The ray through this pixel.")] = None,
-        size: SizeText = "512x512", camera: CameraTexts = None,
+        size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None,
         origin: Annotated[str | None, typer.Option(metavar="x,y,z", help="Where the ray begins, in cells.")] = None,
         direction: Annotated[str | None, typer.Option(metavar="x,y,z", help="Where it goes, of any length.")] = None,
         preset: PresetName = "best", set_: SetTexts = None, frame: Frame = None) -> None:
@@ -174,7 +179,7 @@ def trace(
     from jaart.core.trace import trace as follow
 
     if at is not None:
-        view = typed.camera(camera or [], loaded, settings)
+        view = typed.camera(camera or [], loaded, settings, shape)
         ray, up = typed.pixel_ray(view, shape, at), view.up or up
     assert ray is not None
     report.say_compiling()

@@ -85,10 +85,9 @@ def pixel(text: str, option: str) -> tuple[int, int]:
 
 def check_pixel(at: tuple[int, int], size: tuple[int, int]) -> None:
     """Raise RayError when a pixel is not in a picture of that size."""
-    from jaart.core.render import LONGEST_EDGE
+    from jaart.core.camera import check_size
 
-    if not all(1 <= n <= LONGEST_EDGE for n in size):
-        raise RayError(f"size {size[0]}x{size[1]}: expected a width and a height from 1 to {LONGEST_EDGE}")
+    check_size(size)
     if not (0 <= at[0] < size[0] and 0 <= at[1] < size[1]):
         raise RayError(f"pixel {at[0]},{at[1]}: expected one of the picture, 0,0 to {size[0] - 1},{size[1] - 1}")
 
@@ -122,12 +121,12 @@ def check_meaning(assignments: Sequence[str], scene: Scene) -> None:
             raise SettingsError(f"{name} has no meaning for {scene.source}: it is no model scene")
 
 
-def camera(assignments: Sequence[str], scene: Scene, chosen: Settings) -> Camera:
+def camera(assignments: Sequence[str], scene: Scene, chosen: Settings, size: tuple[int, int] = (1, 1)) -> Camera:
     """A camera with the whole scene in view, and what was typed on top."""
     from jaart.core import prepare
     from jaart.core.camera import Camera, parse
 
-    return parse(assignments, Camera.fit(prepare.extent(scene, chosen)))
+    return parse(assignments, Camera.fit(prepare.extent(scene, chosen), size=size))
 
 
 def pixel_ray(view: Camera, size: tuple[int, int], at: tuple[int, int]) -> Ray:

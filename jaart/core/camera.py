@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -15,12 +16,17 @@ from jaart.core.errors import RayError
 
 if TYPE_CHECKING:
     from jaart.core.kernels.pinhole import View
+    from jaart.core.scene import Scene
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
 
 #: From where a scene is seen when nobody says: from the front, to the right and above.
 DEFAULT_VIEW = (0.45, -1.0, 0.55)
+#: A picture has at most this many pixels along an edge.
+LONGEST_EDGE = 16384
+#: How much farther away a fitted camera stands than it must.
+MARGIN = 1.03
 
 
 @dataclass(frozen=True)
@@ -50,16 +56,23 @@ class Camera:
         self.frame()
 
     @classmethod
-    def fit(cls, extent: Vector, direction: Vector = DEFAULT_VIEW, fov: float = 30.0) -> Camera:
-        """A camera that sees a whole box (0, 0, 0)…extent from a direction.
+    def fit(cls, scene: Scene | Vector, direction: Vector = DEFAULT_VIEW, fov: float = 30.0,
+            size: tuple[int, int] = (1, 1)) -> Camera:
+        """A camera that sees a whole scene from a direction.
 
-        extent: size of the scene in cells; direction: from the middle towards the eye; fov: degrees.
+        scene: a scene at the raster of its file, or the size of one in cells; direction: from the
+        middle towards the eye; fov: degrees; size: (width, height) of the picture, or their ratio.
         """
-        middle = np.asarray(extent) / 2
-        towards = np.asarray(direction) / np.linalg.norm(direction)
-        radius = float(np.linalg.norm(extent)) / 2
-        eye = middle + towards * radius / math.sin(math.radians(fov) / 2)
-        return cls(eye=tuple(eye), target=tuple(middle), fov=fov)
+        check_size(size)
+        extent = np.asarray(scene if isinstance(scene, tuple) else _extent(scene))
+        middle, towards = extent / 2, np.asarray(direction) / np.linalg.norm(direction)
+        camera = cls(eye=tuple(middle + towards), target=tuple(middle), fov=fov)
+        corners = (np.array(list(itertools.product((0, 1), repeat=3))) - 0.5) * extent
+        right, up, forward = camera.frame()
+        slope = math.tan(math.radians(fov) / 2) / max(size)
+        sideways = np.maximum(abs(corners @ right) / (slope * size[0]), abs(corners @ up) / (slope * size[1]))
+        distance = MARGIN * float(np.max(sideways - corners @ forward))
+        return camera.replace(eye=tuple(middle + towards * distance))
 
     def frame(self) -> tuple[Array, Array, Array]:
         """Unit vectors (right, up, forward). Raises RayError when eye, target and up give none."""
@@ -113,6 +126,19 @@ def parse(assignments: Iterable[str], base: Camera) -> Camera:
             raise RayError(f"--camera {text!r}: expected eye=, target=, up=x,y,z, fov=degrees or ortho=width")
         values[name] = _vector(name, value.split(",")) if name in ("eye", "target", "up") else _number(name, value)
     return base.replace(**values)
+
+
+def check_size(size: tuple[int, int]) -> None:
+    """Raise RayError when no picture has this (width, height)."""
+    if not all(isinstance(n, int) and 1 <= n <= LONGEST_EDGE for n in size):
+        raise RayError(f"size {size[0]}x{size[1]}: expected a width and a height from 1 to {LONGEST_EDGE}")
+
+
+def _extent(scene: Scene) -> Vector:
+    from jaart.core.prepare import extent
+    from jaart.core.settings import Settings
+
+    return extent(scene, Settings())
 
 
 def _number(name: str, text: str) -> float:

@@ -12,8 +12,8 @@ from threading import Event
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core import prepare
-from jaart.core.camera import Camera
+from jaart.core import memory, prepare
+from jaart.core.camera import Camera, check_size
 from jaart.core.errors import Cancelled, RayError
 from jaart.core.kernels.pinhole import View, write_rays
 from jaart.core.kernels.ray import trace_rays
@@ -25,8 +25,8 @@ from jaart.core.settings import Settings
 from jaart.core.tiles import Pixels, coarse_passes, tiles
 from jaart.core.warm import warm_up
 
-#: A picture has at most this many pixels along an edge.
-LONGEST_EDGE = 16384
+#: What one ray and its hit take.
+_BYTES_A_RAY = 6 * 8 + 9 * 8 + 4 * 4 + 1
 
 Size = tuple[int, int]
 
@@ -110,10 +110,12 @@ class _Watch:
 
 
 def _camera_job(scene: Scene, settings: Settings, camera: Camera | None, size: Size) -> _Job:
-    if not all(isinstance(n, int) and 1 <= n <= LONGEST_EDGE for n in size):
-        raise RayError(f"size {size[0]}x{size[1]}: expected a width and a height from 1 to {LONGEST_EDGE}")
-    camera = camera or Camera.fit(prepare.extent(scene, settings))
+    check_size(size)
+    camera = camera or Camera.fit(prepare.extent(scene, settings), size=size)
     count = size[0] * size[1]
+    if count * _BYTES_A_RAY > memory.limit():
+        raise RayError(f"size {size[0]}x{size[1]}: needs {memory.words(count * _BYTES_A_RAY)} of memory, more than the "
+                       f"{memory.words(memory.limit())} it may take")
     return _Job(np.empty((count, 3)), np.empty((count, 3)), camera, size, camera.view(size))
 
 

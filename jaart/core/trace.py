@@ -37,13 +37,14 @@ def trace(scene: Scene, settings: Settings, origin: ArrayLike, direction: ArrayL
     shape = ready.cells.empty.shape
     cells, borders = _crossed(o, d, (shape[0], shape[1], shape[2]))
     near, weights = _neighbours(ready, rows)
+    step = np.where(np.isfinite(rows[:, r.STEP]), rows[:, r.STEP], np.nan)
     status, t, point, normal = end[0], end[1], end[2], end[3]
     return Trace(
         origin=frozen(o), direction=frozen(d), t=t, point=frozen(point), normal=frozen(normal),
         status=STATUS_NAMES[status], evaluations=len(rows), t_query=frozen(rows[:, r.T]),
         query=frozen(rows[:, r.X:r.Z + 1]), barycentre=frozen(rows[:, r.AX:r.AZ + 1]),
-        step_normal=frozen(rows[:, r.NX:r.NZ + 1]), t_next=frozen(rows[:, r.T] + rows[:, r.STEP]),
-        next_point=frozen(rows[:, r.X:r.Z + 1] + rows[:, r.STEP, None] * d), energy=frozen(rows[:, r.STEP]),
+        step_normal=frozen(rows[:, r.NX:r.NZ + 1]), t_next=frozen(rows[:, r.T] + step),
+        next_point=frozen(rows[:, r.X:r.Z + 1] + step[:, None] * d), energy=frozen(step),
         off_centre=frozen(rows[:, r.OFF]), weight_sum=frozen(np.exp(rows[:, r.WEIGHT])),
         start=rows[:, r.START].astype(np.int32), step_cell=_step_cells(rows),
         outcome=tuple("continue" if e == r.CONTINUE else STATUS_NAMES[int(e)] for e in rows[:, r.END]),

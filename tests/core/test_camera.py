@@ -78,16 +78,17 @@ def test_up_is_z_or_y_where_the_view_runs_along_z() -> None:
 @pytest.mark.parametrize("extent", [(16, 16, 16), (64, 4, 4), (2, 2, 90)])
 @pytest.mark.parametrize("direction", [(0.45, -1, 0.55), (1, 0, 0), (0, 0, 1), (-1, -1, -1)])
 @pytest.mark.parametrize("fov", [10.0, 30.0, 100.0])
+@pytest.mark.parametrize("size", [(1, 1), (400, 100), (90, 120)])
 def test_fit_sees_all_corners(extent: tuple[float, float, float], direction: tuple[float, float, float],
-                              fov: float) -> None:
-    camera = Camera.fit(extent, direction, fov)
+                              fov: float, size: tuple[int, int]) -> None:
+    camera = Camera.fit(extent, direction, fov, size)
     right, up, forward = camera.frame()
-    edge = math.tan(math.radians(fov) / 2)
+    edge = math.tan(math.radians(fov) / 2) / max(size)
     for corner in itertools.product(*((0, n) for n in extent)):
         away = np.subtract(corner, camera.eye)
         assert away @ forward > 0
-        assert abs(away @ right) <= edge * (away @ forward)
-        assert abs(away @ up) <= edge * (away @ forward)
+        assert abs(away @ right) <= edge * size[0] * (away @ forward)
+        assert abs(away @ up) <= edge * size[1] * (away @ forward)
     assert camera.target == pytest.approx(np.array(extent) / 2)
 
 

@@ -78,7 +78,7 @@ def test_volumes_converge_to_the_analytic_ones() -> None:
     exact = 4 / 3 * math.pi * 0.25**3 + 0.2 * 0.4 * 0.3
     errors = [abs(fill(STANDARD, n, "corners", 20).sum() / n**3 - exact) / exact for n in (8, 16, 32, 64)]
     # Corners on the boxes' faces vote half a sub-cell out, so the error falls like the edge of a cell.
-    assert all(coarse > 1.8 * fine for coarse, fine in zip(errors, errors[1:], strict=False))
+    assert all(coarse > 1.8 * fine for coarse, fine in itertools.pairwise(errors))
     assert errors[3] < 0.003
 
 

@@ -65,6 +65,8 @@ def trace_ray(cells: Cells, search: Search, o: Vector, d: Vector, rows: Array) -
             if state == r.CONVERGED or state == r.FLOOR:
                 return state, t_hit, point, n, step, off, iterations, evaluations, used, visited
         t, cell = advance(axes, cell, max(int(cells.empty[cell]) - 1, 0))
+        if not t < leave:  # a skipped block may reach past the lattice
+            break
     return state, nan, nothing, nothing, step, off, iterations, evaluations, used, visited
 
 

@@ -156,7 +156,7 @@ def crossed(o: Array, d: Array, shape: Cell, cells: NDArray[np.int32], borders: 
 @kernel(STRICT)
 def face_below(axis: Axis) -> int:
     """1 when a ray runs within the face between a cell and the one below it, else 0."""
-    return 1 if axis.way == 0 and axis.o > 0.0 and axis.o == floor(axis.o) else 0
+    return 1 if axis.way == 0 and 0.0 < axis.o < axis.n and axis.o == floor(axis.o) else 0
 
 
 @kernel(STRICT)
