@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from qtpy.QtCore import QEvent, QObject, Qt, QTimer
-from qtpy.QtGui import QCloseEvent, QShowEvent
+from qtpy.QtGui import QCloseEvent, QKeyEvent, QShowEvent
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QToolButton, QVBoxLayout, QWidget
 
 from jaart.core.records import Trace
@@ -35,7 +35,7 @@ class Analyzer3D(QWidget):
         self._actors: dict[str, Any] = {}
         self._dirty, self._moved = True, True
         self._closed = False
-        self._seen: Trace | None = None
+        self._seen: Trace | None = model.trace
         self._arrange()
         self._timer = QTimer(self, singleShot=True, interval=0)
         self._timer.timeout.connect(self._redraw)
@@ -79,7 +79,7 @@ class Analyzer3D(QWidget):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Keys step through the iterations instead of reaching the view's own shortcuts."""
-        if event.type() == QEvent.Type.KeyPress:
+        if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
             return step_by_key(self.model, event) or bool(event.text())
         return bool(super().eventFilter(watched, event))
 
@@ -127,7 +127,7 @@ class Analyzer3D(QWidget):
         for name, part in PARTS.items():
             self._actors[name] = self._view.add_mesh(
                 _polydata(dot), scalars="rgb", rgb=True, lighting=not part.width, line_width=part.width or None,
-                opacity=part.opacity, ambient=0.45, diffuse=0.6, show_scalar_bar=False, render=False,
+                opacity=part.opacity, ambient=0.55, diffuse=0.5, show_scalar_bar=False, render=False,
                 reset_camera=False)
 
     def _say(self, message: str) -> None:
@@ -169,6 +169,6 @@ def _polydata(mesh: Mesh) -> PolyData:
 
     count, corners = mesh.elements.shape
     cells = np.hstack([np.full((count, 1), corners), mesh.elements]).ravel()
-    data = PolyData(mesh.points, **{"lines" if corners == 2 else "faces": cells})
+    data = PolyData(mesh.points, lines=cells) if corners == 2 else PolyData(mesh.points, faces=cells)
     data.point_data["rgb"] = mesh.colours
     return data

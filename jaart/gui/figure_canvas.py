@@ -58,6 +58,7 @@ class FigureCanvas(QWidget):
         self._axes: Axes | None = None
         self._grip: tuple[float, float, tuple[float, float], tuple[float, float]] | None = None
         self._moved = self.zoomed = False
+        self._later = QTimer(self, singleShot=True, interval=0)
         self._message = QLabel(message)
         self._message.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._message.setWordWrap(True)
@@ -92,6 +93,9 @@ class FigureCanvas(QWidget):
         from matplotlib.figure import Figure
 
         self._canvas = FigureCanvasQTAgg(Figure(dpi=100))
+        # matplotlib's own delayed drawing outlives the widget and would then fail; this timer goes with it.
+        self._later.timeout.connect(self._canvas.draw)
+        self._canvas.draw_idle = self._later.start
         self._canvas.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._canvas.setMinimumSize(0, 0)
         self._canvas.figure.set_size_inches(max(self.width(), 10) / 100, max(self.height(), 10) / 100, forward=False)
@@ -186,7 +190,7 @@ class FigurePanel(QWidget):
         self.rows.setSpacing(0)
         self.rows.addWidget(self.canvas, 1)
         self._dirty = True
-        self._seen: Trace | None = None
+        self._seen: Trace | None = model.trace
         self._timer = QTimer(self, singleShot=True, interval=0)
         self._timer.timeout.connect(self._redraw)
         model.theme_changed.connect(self.mark_dirty)

@@ -9,16 +9,15 @@ import numpy as np
 from qtpy.QtCore import QObject, Signal
 
 from jaart.core.camera import Camera
-from jaart.core.errors import FileError
 from jaart.core.records import Hits, Quality, Trace
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings
-from jaart.gui.worker import Job, Worker
+from jaart.gui import tasks
+from jaart.gui.tasks import Extent
+from jaart.gui.worker import Worker
 
 if TYPE_CHECKING:
     from os import PathLike
-
-Extent = tuple[float, float, float]
 
 #: While the camera is dragged, pictures are made smaller until one takes about this long [s].
 DRAG_SECONDS = 0.03
@@ -82,7 +81,7 @@ class SceneModel(QObject):
         """Read a scene; when it cannot be read, `failed` says why and the old scene stays."""
         settings = self.settings
         self.said.emit(f"Reading {source} …")
-        self._worker.submit("open", lambda job: _read(source, frame, settings),
+        self._worker.submit("open", lambda job: tasks.read(source, frame, settings),
                             lambda read: self._opened(*read, camera))
 
     def set_value(self, name: str, value: Any) -> None:
@@ -195,7 +194,7 @@ class SceneModel(QObject):
             return
         scene, settings, camera = self.scene, self.settings, self.camera
         size = self._drag_size() if dragging else self.size
-        self._worker.submit("picture", lambda job: _picture(job, scene, settings, camera, size, dragging),
+        self._worker.submit("picture", lambda job: tasks.picture(job, scene, settings, camera, size, dragging),
                             lambda made: self._show(*made), lambda hits: self._show(hits, None),
                             brief=dragging)
 
@@ -215,7 +214,7 @@ class SceneModel(QObject):
         if self.scene is None or self.camera is None or self.picked is None:
             return
         scene, settings, camera, size, pixel = self.scene, self.settings, self.camera, self.size, self.picked
-        self._worker.submit("trace", lambda job: _ray(scene, settings, camera, size, pixel), self._traced,
+        self._worker.submit("trace", lambda job: tasks.ray(scene, settings, camera, size, pixel), self._traced,
                             brief=True)
 
     def _traced(self, trace: Trace) -> None:
@@ -235,36 +234,3 @@ def _with_settings(hits: Hits, settings: Settings) -> Hits:
     if hits.settings == settings or hits.settings.key("rays") != settings.key("rays"):
         return hits
     return replace(hits, settings=settings)
-
-
-def _read(source: str | PathLike[str], frame: int | None, settings: Settings) -> tuple[Scene, Extent]:
-    from jaart.core import prepare
-    from jaart.core.io import load
-
-    scene = load(source, frame)
-    if not len(prepare.surfels(scene, settings)):
-        raise FileError(source, "no surface: expected cells with a level between 0 and 1, or full ones beside empty ones",
-                        f"frame {scene.frame}" if scene.frames > 1 else "")
-    return scene, prepare.extent(scene, settings)
-
-
-def _picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int],
-             dragging: bool) -> tuple[Hits, Quality | None]:
-    from jaart.core.quality import quality
-    from jaart.core.render import render
-    from jaart.core.warm import needs_compile
-
-    if needs_compile():
-        job.say("Compiling the kernels, once on this machine; this takes some seconds …")
-    hits = render(scene, settings, camera, size, progress=None if dragging else job.progress, cancel=job.cancel,
-                  picture=None if dragging else job.partial)
-    return hits, None if dragging else quality(hits, scene)
-
-
-def _ray(scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int], pixel: tuple[int, int]) -> Trace:
-    from jaart.core.trace import trace
-
-    origins, directions = camera.rays(size, np.array([pixel[0] + pixel[1] * size[0]]))
-    return trace(scene, settings, origins[0], directions[0], pixel=pixel)
-
-

@@ -54,7 +54,7 @@ def _draw_bar(painter: QPainter, area: QRect, name: str, limits: tuple[float, fl
 
 
 def _draw_states(painter: QPainter, area: QRect, hits: Hits, theme: str) -> None:
-    width, y = 190, area.top() + 12
+    width, y = 224, area.top() + 12
     for name, count in hits.counts().items():
         rgb = BACKGROUND[theme] if name == "background" else COLOURS[name]
         painter.setPen(look.colour(theme, "weak"))

@@ -75,5 +75,5 @@ def _sheet(c: dict[str, str]) -> str:
     #messages {{ background: {c['alarm_ground']}; border-bottom: 1px solid {c['alarm']}; }}
     #messages QLabel {{ color: {c['alarm']}; font-weight: 600; }}
     #messages QToolButton {{ color: {c['alarm']}; border: none; background: transparent; }}
-    *[fault="true"] {{ border: 1px solid {c['alarm']}; }}
+    QLineEdit[fault="true"] {{ color: {c['alarm']}; }}
     """

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,6 +94,8 @@ def _range(trace: Trace, span: tuple[float, float]) -> tuple[float, float]:
 
 
 def _cells(axes: Axes, trace: Trace, colours: Theme) -> None:
+    from matplotlib import rc_context
+
     parts = np.stack([trace.borders[:-1], np.diff(trace.borders)], axis=1)
     across = axes.get_xaxis_transform()
     axes.broken_barh(parts[::2].tolist(), (0, 1), transform=across, facecolor=colours.band, zorder=0)
@@ -102,9 +104,9 @@ def _cells(axes: Axes, trace: Trace, colours: Theme) -> None:
         for odd, hatch in enumerate(("/////", "\\\\\\\\\\")):
             chosen = parts[(np.arange(len(parts)) % 2 == odd) & (trace.with_surfel == full)]
             edge = colours.full_cell if full else colours.cell
-            axes.broken_barh(chosen.tolist(), (0, _STRIP), transform=across, zorder=2, hatch=hatch, edgecolor=edge,
-                             facecolor=colours.face, linewidth=1.8 if full else 0.4,
-                             hatch_linewidth=1.7 if full else 0.4)
+            with rc_context({"hatch.linewidth": 1.7 if full else 0.4}):
+                axes.broken_barh(chosen.tolist(), (0, _STRIP), transform=across, zorder=2, hatch=hatch, edgecolor=edge,
+                                 facecolor=colours.face, linewidth=1.8 if full else 0.4)
     axes.axhline(0, color=colours.muted, linewidth=0.8, zorder=1)
 
 
@@ -127,45 +129,52 @@ def _without_poles(values: Array) -> Array:
 
 
 def _steps(axes: Axes, trace: Trace, step: int, colours: Theme) -> list[Spot]:
+    """All steps, those of other starts faint, the chosen one on top; a few artists in all, for speed."""
     low, high = axes.get_ylim()
     shown = np.clip(trace.energy, low + _STRIP * (high - low), high)
-    for i in range(trace.steps):
-        _stair(axes, trace, i, shown, colours, i == step, trace.start[i] == trace.start[step])
-    spots = []
-    for i in sorted(range(trace.steps), key=lambda i: i == step):
-        alpha = 1.0 if trace.start[i] == trace.start[step] else 0.35
-        spots += _marks(axes, trace, i, shown[i], colours, i == step, alpha)
+    number = np.arange(trace.steps)
+    same = trace.start == trace.start[step] if trace.steps else np.zeros(0, bool)
+    for chosen, alpha, scale in ((~same, 0.3, 0.7), (same & (number != step), 0.8, 0.7), (number == step, 1.0, 1.0)):
+        if chosen.any():
+            _stairs(axes, trace, np.flatnonzero(chosen), shown, colours, alpha)
+            _marks(axes, trace, chosen, shown, colours, alpha, scale)
+    spots = [spot for i in number for spot in _spots(trace, int(i), shown[i])]
+    left, right = axes.get_xlim()
+    style.label(axes, [(s.x, s.y, s.text[:s.text.index(":")], colours.query if s.text[0] == "Q" else colours.next)
+                       for s in sorted(spots, key=lambda s: (s.step != step, -(s.step or 0)))
+                       if left <= s.x <= right and same[s.step]])
     if trace.hit:
         axes.plot(trace.t, 0, zorder=8, **style.marker("hit", colours))
         spots.append(Spot(trace.t, 0.0, f"hit: t = {trace.t:.4f}"))
-    left, right = axes.get_xlim()
-    style.label(axes, [(s.x, s.y, s.text[:s.text.index(":")], colours.query if s.text[0] == "Q" else colours.next)
-                       for s in reversed(spots) if s.step is not None and left <= s.x <= right
-                       and trace.start[s.step] == trace.start[step]])
     return spots
 
 
-def _stair(axes: Axes, trace: Trace, i: int, shown: Array, colours: Theme, chosen: bool, same: bool) -> None:
-    """From Q on the curve down to H on the axis, and from there to the next Q; fainter in other starts."""
-    if not np.isfinite(trace.energy[i]):
-        return
-    alpha = 1.0 if chosen else 0.8 if same else 0.25
-    look: dict[str, Any] = {"color": colours.next, "linewidth": 2.0 if chosen else 0.8, "alpha": alpha, "zorder": 5}
-    axes.plot([trace.t_query[i], trace.t_next[i]], [shown[i], 0], **look)
-    if i + 1 < trace.steps and trace.start[i + 1] == trace.start[i]:
-        axes.plot([trace.t_next[i]] * 2, [0, shown[i + 1]], **look | {"color": colours.query, "linewidth": 0.8},
-                  linestyle=":")
+def _stairs(axes: Axes, trace: Trace, steps: NDArray[np.intp], shown: Array, colours: Theme, alpha: float) -> None:
+    """From each Q on the curve down to H on the axis, and from there to the next Q of the same start."""
+    from matplotlib.collections import LineCollection
+
+    q, h, start = trace.t_query, trace.t_next, trace.start
+    down = [[(q[i], shown[i]), (h[i], 0)] for i in steps if np.isfinite(h[i])]
+    on = [[(h[i], 0), (h[i], shown[i + 1])] for i in steps if i + 1 < trace.steps and start[i + 1] == start[i]]
+    axes.add_collection(LineCollection(down, color=colours.next, linewidth=2.0 if alpha == 1 else 0.8, alpha=alpha,
+                                       zorder=5), autolim=False)
+    axes.add_collection(LineCollection(on, color=colours.query, linewidth=0.8, alpha=alpha, linestyle=":", zorder=5),
+                        autolim=False)
 
 
-def _marks(axes: Axes, trace: Trace, i: int, shown: float, colours: Theme, chosen: bool,
-           alpha: float) -> list[Spot]:
-    if not np.isfinite(shown):
-        axes.plot(trace.t_query[i], 0, zorder=6, alpha=0.5, **style.marker("query", colours))
-        return [Spot(trace.t_query[i], 0.0, f"Q{i + 1}: {style.OUTCOMES[trace.outcome[i]]}", i)]
-    size = style.MARK if chosen else 0.7 * style.MARK
-    axes.plot(trace.t_next[i], 0, zorder=6 + chosen, alpha=alpha, **style.marker("next", colours, size))
-    axes.plot(trace.t_query[i], shown, zorder=6 + chosen, alpha=alpha, **style.marker("query", colours, size))
-    beyond = "" if shown == trace.energy[i] else " (beyond the plot)"
-    return [Spot(trace.t_next[i], 0.0, f"H{i + 1}: t = {trace.t_next[i]:.4f}", i),
-            Spot(trace.t_query[i], float(shown),
-                 f"Q{i + 1}: t = {trace.t_query[i]:.4f}, e_ts = {trace.energy[i]:+.4f} cells{beyond}", i)]
+def _marks(axes: Axes, trace: Trace, chosen: NDArray[np.bool_], shown: Array, colours: Theme, alpha: float,
+           scale: float) -> None:
+    size = scale * style.MARK
+    axes.plot(trace.t_next[chosen], np.zeros(chosen.sum()), zorder=6 + scale, alpha=alpha,
+              **style.marker("next", colours, size))
+    axes.plot(trace.t_query[chosen], np.nan_to_num(shown[chosen]), zorder=6 + scale, alpha=alpha,
+              **style.marker("query", colours, size))
+
+
+def _spots(trace: Trace, i: int, shown: float) -> list[Spot]:
+    t, t_next, energy = trace.t_query[i], trace.t_next[i], trace.energy[i]
+    if not np.isfinite(energy):
+        return [Spot(t, 0.0, f"Q{i + 1}: t = {t:.4f}, {style.OUTCOMES[trace.outcome[i]]}", i)]
+    beyond = "" if shown == energy else " (beyond the plot)"
+    return [Spot(t_next, 0.0, f"H{i + 1}: t = {t_next:.4f}", i),
+            Spot(t, float(shown), f"Q{i + 1}: t = {t:.4f}, e_ts = {energy:+.4f} cells{beyond}", i)]

@@ -124,11 +124,10 @@ def _plane(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> 
 
 
 def _points(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> list[Spot]:
-    spots = []
-    for i in range(trace.steps):
-        if i != step:
-            axes.plot(trace.t_query[i], 0, zorder=5, alpha=0.45, **style.marker("query", colours, 0.6 * style.MARK))
-            spots.append(_spot(trace.query[i], (trace.t_query[i], 0), f"Q{i + 1}", i))
+    others = [i for i in range(trace.steps) if i != step]
+    spots = [_spot(trace.query[i], (trace.t_query[i], 0), f"Q{i + 1}", i) for i in others]
+    axes.plot(trace.t_query[others], np.zeros(len(others)), zorder=5, alpha=0.45, scalex=False, scaley=False,
+              **style.marker("query", colours, 0.6 * style.MARK))
     here = f"{step + 1}"
     spots += _chosen(axes, trace, step, flat, colours)
     if trace.hit:

@@ -108,7 +108,7 @@ def _surfels(trace: Trace, step: int, colours: Theme) -> list[Mesh]:
     if not len(near):
         return []
     share = (weights / weights.max())[:, None]
-    colour = rgb(colours.face) + (0.3 + 0.7 * share) * (rgb(colours.surfel) - rgb(colours.face))
+    colour = rgb(colours.face) + (0.45 + 0.55 * share) * (rgb(colours.surfel) - rgb(colours.face))
     points, normals = trace.surfels.points[near], trace.surfels.normal[near]
     return [copies(glyphs.disc(), points, normals, 0.06 + (_SURFEL - 0.06) * np.sqrt(share[:, 0]), colour),
             copies(glyphs.arrow(_NORMAL, 0.035), points, normals, 1.0, colour)]

@@ -38,7 +38,8 @@ def draw_statistics(figure: Figure, statistics: Statistics, theme: str = "light"
     colours = THEMES[theme]
     style.blank(figure, colours)
     notes = _notes(statistics)
-    steps, cells, ends = (figure.add_axes(box) for box in _boxes(*figure.get_size_inches(), len(notes)))
+    width, height = figure.get_size_inches()
+    steps, cells, ends = (figure.add_axes(box) for box in _boxes(width, height, len(notes)))
     _steps(steps, statistics, colours)
     _histogram(cells, statistics.cells, colours, "Cells a ray", "cells visited", colours.full_cell)
     _ends(ends, statistics, colours, notes)
@@ -86,7 +87,7 @@ def _histogram(axes: Axes, histogram: Histogram, colours: Theme, title: str, xla
     axes.grid(axis="y", color=colours.grid, linewidth=0.6)
     axes.set_axisbelow(True)
     axes.set_ylim(0, 1.08 * shares.max())
-    inches = axes.get_position().width * axes.get_figure(root=True).get_figwidth()
+    inches = axes.bbox.width / axes.figure.dpi
     every = math.ceil(len(names) * (0.08 * max(len(n) for n in names) + 0.08) / inches)
     ticks = [*range(0, len(names) - every, every), len(names) - 1]
     axes.set_xticks(ticks, [names[i] for i in ticks])

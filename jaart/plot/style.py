@@ -84,6 +84,7 @@ def marker(kind: str, theme: Theme, size: float = MARK) -> dict[str, Any]:
 def dress(axes: Axes, theme: Theme, xlabel: str = "", ylabel: str = "") -> None:
     """Give an axes the theme's colours and the common sizes."""
     axes.set_facecolor(theme.face)
+    axes.locator_params(nbins=7)
     for side, spine in axes.spines.items():
         spine.set_color(theme.cell)
         spine.set_visible(side in ("left", "bottom"))

@@ -8,9 +8,10 @@ from qtpy.QtTest import QTest
 
 from jaart.core.parameter import Length
 from jaart.core.settings import PARAMETERS, Settings
-from jaart.gui.form import ChoiceRow, FlagRow, NumberRow, VectorRow, make_row, slider_span
+from jaart.gui.form import ChoiceRow, FlagRow, NumberRow, VectorRow, make_row
 from jaart.gui.model import SceneModel
 from jaart.gui.parameters import OWN, Parameters
+from jaart.gui.values import slider_span
 
 
 @pytest.fixture
