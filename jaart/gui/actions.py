@@ -17,6 +17,13 @@ if TYPE_CHECKING:
 
 SAMPLES = {"Splash": "splash", "Standard model": "standard"}
 SIZES = (256, 512, 768, 1024)
+ABOUT = ("Jaart shows point-based surfaces of fill levels by ray tracing, without a mesh. "
+         "Click a pixel to see, step by step, how its ray found the surface.")
+KEYS = """<table cellspacing="6">
+<tr><td>left drag</td><td>turn the scene</td></tr><tr><td>middle or Shift + drag</td><td>move it</td></tr>
+<tr><td>wheel, + and -</td><td>nearer and farther</td></tr><tr><td>click</td><td>pick the ray of a pixel</td></tr>
+<tr><td>arrow keys</td><td>move the picked pixel; with Shift by ten</td></tr>
+<tr><td>F</td><td>see the whole scene</td></tr><tr><td>Esc</td><td>forget the picked ray</td></tr></table>"""
 
 
 class Actions:
@@ -87,8 +94,6 @@ class Actions:
             panels.addAction(dock.toggleViewAction())
 
     def _help_menu(self) -> None:
-        from jaart.gui.main_window import ABOUT, KEYS
-
         menu = self.window.menuBar().addMenu("&Help")
         menu.addAction(self._action("&Mouse and keys", partial(self.window.tell, "Mouse and keys", KEYS), "F1"))
         menu.addAction(self._action("&About Jaart", partial(self.window.tell, "About Jaart", ABOUT)))

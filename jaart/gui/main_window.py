@@ -21,13 +21,6 @@ from jaart.gui.parameters import Parameters
 from jaart.gui.status import Status
 
 FILES = "Scenes (*.npz *.npy *.vti *.xml);;All files (*)"
-ABOUT = ("Jaart shows point-based surfaces of fill levels by ray tracing, without a mesh. "
-         "Click a pixel to see, step by step, how its ray found the surface.")
-KEYS = """<table cellspacing="6">
-<tr><td>left drag</td><td>turn the scene</td></tr><tr><td>middle or Shift + drag</td><td>move it</td></tr>
-<tr><td>wheel, + and -</td><td>nearer and farther</td></tr><tr><td>click</td><td>pick the ray of a pixel</td></tr>
-<tr><td>arrow keys</td><td>move the picked pixel; with Shift by ten</td></tr>
-<tr><td>F</td><td>see the whole scene</td></tr><tr><td>Esc</td><td>forget the picked ray</td></tr></table>"""
 
 
 class MainWindow(QMainWindow):

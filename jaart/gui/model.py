@@ -104,7 +104,7 @@ class SceneModel(QObject):
 
     def set_camera(self, camera: Camera, dragging: bool = False) -> None:
         """Look from elsewhere; while dragging, smaller pictures are made so that they keep up."""
-        if camera == self.camera and (dragging or self.complete):
+        if camera == self.camera and (dragging or (self.idle and self.complete)):
             return
         self.camera = camera
         self.camera_changed.emit()

@@ -23,7 +23,7 @@ def read(source: str | PathLike[str], frame: int | None, settings: Settings) -> 
 
     scene = load(source, frame)
     if not len(prepare.surfels(scene, settings)):
-        raise FileError(source, "no surface: expected cells with a level between 0 and 1, or full ones beside empty ones",
+        raise FileError(source, "no surface: expected cells with levels between 0 and 1, or full beside empty ones",
                         f"frame {scene.frame}" if scene.frames > 1 else "")
     return scene, prepare.extent(scene, settings)
 

@@ -7,18 +7,11 @@ import os
 os.environ.setdefault("QT_API", "pyside6")
 
 import pytest
+from patience import PATIENCE, settle
 from qtpy.QtCore import QCoreApplication, QEvent
 
 from jaart.gui.main_window import MainWindow
 from jaart.gui.model import SceneModel
-
-#: Longest wait for a picture or a panel, the first compilation of all kernels included [ms].
-PATIENCE = 60_000
-
-
-def settle(qtbot, model):
-    """Wait until everything that was asked for is done."""
-    qtbot.waitUntil(lambda: model.idle, timeout=PATIENCE)
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import threading
 
 import numpy as np
 import pytest
-from conftest import PATIENCE, settle
+from patience import PATIENCE, settle
 
 from jaart.core.camera import Camera
 from jaart.core.errors import SettingsError
@@ -134,6 +134,24 @@ def test_the_picked_pixel_keeps_its_place_in_a_larger_picture(qtbot, standard):
     settle(qtbot, standard)
     assert standard.picked == (96, 48)
     assert standard.hits.size == (192, 192)
+
+
+def test_a_drag_is_followed_by_small_pictures_and_ends_in_the_full_one(qtbot, standard, monkeypatch):
+    monkeypatch.setattr("jaart.gui.model.DRAG_SECONDS", 0.0)
+    sizes = []
+    standard.hits_changed.connect(lambda: sizes.append(standard.hits.size))
+    for degrees in (5, 10):
+        standard.set_camera(orbit(standard.camera, degrees, 0), dragging=True)
+    standard.set_camera(standard.camera)
+    settle(qtbot, standard)
+    assert sizes[0] == (12, 12)
+    assert standard.complete
+    assert standard.hits.camera == standard.camera
+
+
+def test_the_same_camera_makes_no_new_picture(qtbot, standard):
+    standard.set_camera(standard.camera)
+    assert standard.idle
 
 
 def test_a_bad_value_changes_nothing(qtbot, standard):

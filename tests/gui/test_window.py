@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from conftest import PATIENCE, settle
-from qtpy.QtCore import QMimeData, QPointF, Qt, QUrl
+from patience import PATIENCE, settle
+from qtpy.QtCore import QMimeData, QPointF, Qt, QTimer, QUrl
 from qtpy.QtGui import QDropEvent, QImage, QPalette
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication
 
 from jaart.core.errors import JaartError
+from jaart.core.settings import Settings
 from jaart.gui import app, libraries
+from jaart.gui.main_window import MainWindow
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -165,6 +167,19 @@ def test_a_screenshot_shows_the_picked_ray(qtbot, tmp_path):
     assert QImage(str(path)).width() == 1600
 
 
+def test_the_window_ends_when_it_is_closed(qtbot):
+    def close_when_done():
+        windows = [w for w in QApplication.topLevelWidgets() if isinstance(w, MainWindow) and w.isVisible()]
+        if windows and windows[0].model.complete:
+            assert windows[0].model.settings.h.value == 1.5
+            windows[0].close()
+
+    timer = QTimer(interval=50)
+    timer.timeout.connect(close_when_done)
+    timer.start()
+    assert app.run("standard", settings=Settings(h=1.5)) == 0
+
+
 def test_a_screenshot_of_what_cannot_be_read_is_an_error(qtbot, tmp_path):
     path = tmp_path / "window.png"
     with pytest.raises(JaartError, match=r"missing\.npz"):
@@ -196,7 +211,6 @@ def test_missing_libraries_are_named_by_their_packages(monkeypatch):
 
 def test_the_window_opens_the_sample_when_the_scene_cannot_be_read(qtbot, tmp_path):
     from jaart.gui.app import fall_back_on_sample
-    from jaart.gui.main_window import MainWindow
 
     window = MainWindow()
     window.model.set_size(64, 64)
