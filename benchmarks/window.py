@@ -70,10 +70,12 @@ def opened():
     from qtpy.QtCore import Qt, QTimer
     from qtpy.QtWidgets import QApplication
 
+    from jaart.gui import garbage
     from jaart.gui.main_window import MainWindow
 
     app = QApplication(["jaart"])
     window, stalls, last = MainWindow(), [0.0], [0.0]
+    window.loader.finished.connect(garbage.set_aside)
     window.show()
     window.model.open("splash")
     wait(lambda: window.model.complete)
@@ -166,10 +168,9 @@ def wait(done, patience: float = 60.0) -> None:
     from qtpy.QtCore import QEventLoop, QTimer
 
     loop, timer, end = QEventLoop(), QTimer(interval=1), time.perf_counter() + patience
-    timer.timeout.connect(lambda: loop.quit() if done() or time.perf_counter() > end else None)
+    timer.timeout.connect(lambda: loop.exit(0) if done() else loop.exit(1) if time.perf_counter() > end else None)
     timer.start()
-    loop.exec()
-    if not done():
+    if loop.exec():
         raise TimeoutError(f"nothing was painted in {patience:g} s")
 
 

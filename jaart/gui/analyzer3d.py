@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from qtpy.QtCore import QEvent, QObject, Qt, QTimer
-from qtpy.QtGui import QCloseEvent, QKeyEvent, QShowEvent
+from qtpy.QtCore import QEvent, QObject, Qt
+from qtpy.QtGui import QCloseEvent, QKeyEvent
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QToolButton, QVBoxLayout, QWidget
 
-from jaart.core.records import Trace
-from jaart.gui.figure_canvas import same_ray, step_by_key
 from jaart.gui.model import SceneModel
+from jaart.gui.panel import Panel, step_by_key
 from jaart.plot.glyphs import Mesh
 from jaart.plot.scene3d import PARTS, Up, step_meshes, view
 from jaart.plot.style import NO_STEPS, THEMES
@@ -25,29 +24,22 @@ _VIEWS = (("oblique", "reset view", "Look from the side and above"),
           ("side", "side view", "Look straight onto the plane of the 2D projector"))
 
 
-class Analyzer3D(QWidget):
+class Analyzer3D(Panel):
     """The 3D ray analyzer; its view is made when there is first something to see in it."""
 
     def __init__(self, model: SceneModel, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.model = model
+        super().__init__(model, parent)
         self._view: Any = None
         self._actors: dict[str, Any] = {}
-        self._dirty, self._moved = True, True
-        self._closed = False
-        self._seen: Trace | None = model.trace
+        self._moved, self._closed = True, False
         self._arrange()
-        self._timer = QTimer(self, singleShot=True, interval=0)
-        self._timer.timeout.connect(self._redraw)
-        model.trace_changed.connect(self._new_trace)
+        model.trace_changed.connect(self.new_trace)
         model.step_changed.connect(self.mark_dirty)
-        model.theme_changed.connect(self.mark_dirty)
 
-    def mark_dirty(self) -> None:
-        """Draw again soon, or when shown."""
-        self._dirty = True
-        if self.isVisible():
-            self._timer.start()
+    def new_view(self) -> None:
+        """Look at another ray from a view that shows it."""
+        self._moved = True
+        self.mark_dirty()
 
     def look(self, kind: str) -> None:
         """Look at the chosen step: "oblique", "ray" or "side"."""
@@ -61,16 +53,9 @@ class Analyzer3D(QWidget):
     def close_view(self) -> None:
         """Give the view's window and memory back; the panel shows nothing afterwards."""
         self._closed = True
-        self._timer.stop()
         if self._view is not None:
             self._view.close()
             self._view, self._actors = None, {}
-
-    def showEvent(self, event: QShowEvent) -> None:
-        """Draw what changed while the panel was hidden."""
-        super().showEvent(event)
-        if self._dirty:
-            self._timer.start()
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Close the view before its window goes."""
@@ -83,16 +68,10 @@ class Analyzer3D(QWidget):
             return step_by_key(self.model, event) or bool(event.text())
         return bool(super().eventFilter(watched, event))
 
-    def _new_trace(self) -> None:
-        if not same_ray(self._seen, self.model.trace):
-            self._moved = True
-        self._seen = self.model.trace
-        self.mark_dirty()
-
-    def _redraw(self) -> None:
-        if not self._dirty or not self.isVisible() or self._closed:
+    def draw(self) -> None:
+        """Draw the chosen step, into a view that is made on first use."""
+        if self._closed:
             return
-        self._dirty = False
         trace = self.model.trace
         if trace is None or not trace.steps:
             self._say(_MESSAGE if trace is None else NO_STEPS)

@@ -38,6 +38,7 @@ def run(source: str | PathLike[str] | None = None, settings: Settings | None = N
     from qtpy.QtCore import QEventLoop
     from qtpy.QtWidgets import QApplication
 
+    from jaart.gui import garbage
     from jaart.gui.main_window import MainWindow
     from jaart.gui.model import PICTURE
     from jaart.gui.screenshot import Screenshot
@@ -48,6 +49,7 @@ def run(source: str | PathLike[str] | None = None, settings: Settings | None = N
     window, loop = MainWindow(), QEventLoop()
     window.model.set_settings(settings or Settings())
     window.closed.connect(loop.quit)
+    window.loader.finished.connect(garbage.set_aside)
     problems: list[str] = []
     if screenshot is None:
         fall_back_on_sample(window)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from qtpy.QtCore import QEvent, QPoint, Qt, QTimer, Signal
-from qtpy.QtGui import QKeyEvent, QShowEvent
+from qtpy.QtCore import QEvent, QPoint, Qt, Signal
 from qtpy.QtWidgets import QLabel, QStackedLayout, QToolTip, QVBoxLayout, QWidget
 
-from jaart.core.records import Trace
 from jaart.gui.model import SceneModel
+from jaart.gui.panel import Panel
+from jaart.gui.turns import turns
 from jaart.plot.style import Spot, place
 
 if TYPE_CHECKING:
@@ -19,23 +19,6 @@ if TYPE_CHECKING:
 
 #: How near (pixels) the mouse must come to a spot.
 _REACH = 9.0
-
-
-def step_by_key(model: SceneModel, event: QKeyEvent) -> bool:
-    """Choose another step by ←, →, Home or End; whether the key was one of them."""
-    last = model.trace.steps - 1 if model.trace is not None else 0
-    targets = {Qt.Key.Key_Left: model.step - 1, Qt.Key.Key_Right: model.step + 1, Qt.Key.Key_Home: 0,
-               Qt.Key.Key_End: last}
-    if event.key() not in targets:
-        return False
-    model.set_step(targets[Qt.Key(event.key())])
-    return True
-
-
-def same_ray(one: Trace | None, other: Trace | None) -> bool:
-    """Whether two traces are of the same ray, so that what is seen of it may stay."""
-    return one is not None and other is not None and bool(
-        (one.origin == other.origin).all() and (one.direction == other.direction).all())
 
 
 class FigureCanvas(QWidget):
@@ -48,8 +31,6 @@ class FigureCanvas(QWidget):
     stepped = Signal(int)
     #: The view was reset and must be drawn again.
     reset = Signal()
-    #: The figure has another size.
-    resized = Signal()
 
     def __init__(self, message: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -58,7 +39,6 @@ class FigureCanvas(QWidget):
         self._axes: Axes | None = None
         self._grip: tuple[float, float, tuple[float, float], tuple[float, float]] | None = None
         self._moved = self.zoomed = False
-        self._later = QTimer(self, singleShot=True, interval=0)
         self._message = QLabel(message)
         self._message.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._message.setWordWrap(True)
@@ -93,9 +73,8 @@ class FigureCanvas(QWidget):
         from matplotlib.figure import Figure
 
         self._canvas = FigureCanvasQTAgg(Figure(dpi=100))
-        # matplotlib's own delayed drawing outlives the widget and would then fail; this timer goes with it.
-        self._later.timeout.connect(self._canvas.draw)
-        self._canvas.draw_idle = self._later.start
+        # matplotlib's own delayed drawing outlives the widget and would then fail.
+        self._canvas.draw_idle = self._ask
         self._canvas.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._canvas.setMinimumSize(0, 0)
         self._canvas.figure.set_size_inches(max(self.width(), 10) / 100, max(self.height(), 10) / 100, forward=False)
@@ -105,11 +84,16 @@ class FigureCanvas(QWidget):
                            ("resize_event", self._place)):
             self._canvas.mpl_connect(name, slot)
 
+    def _ask(self) -> None:
+        turns().ask(self._paint)
+
+    def _paint(self) -> None:
+        self._canvas.draw()
+
     def _place(self, event: Any = None) -> None:
         """Keep the margins of a single axes when the size changes."""
         if self._axes is not None:
             place(self._canvas.figure)
-        self.resized.emit()
 
     def spot_at(self, x: float, y: float) -> Spot | None:
         """The spot nearest to a place of the canvas (matplotlib pixels, from the lower left), if near enough."""
@@ -173,14 +157,13 @@ class FigureCanvas(QWidget):
         self._canvas.draw_idle()
 
 
-class FigurePanel(QWidget):
-    """A panel with one figure that is drawn again, at most once a turn of the event loop, while it is seen."""
+class FigurePanel(Panel):
+    """A panel with one figure."""
 
     message = ""
 
     def __init__(self, model: SceneModel, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.model = model
+        super().__init__(model, parent)
         self.canvas = FigureCanvas(self.message, self)
         self.canvas.stepped.connect(model.set_step)
         self.canvas.reset.connect(self.mark_dirty)
@@ -189,53 +172,14 @@ class FigurePanel(QWidget):
         self.rows.setContentsMargins(0, 0, 0, 0)
         self.rows.setSpacing(0)
         self.rows.addWidget(self.canvas, 1)
-        self._dirty = True
-        self._seen: Trace | None = model.trace
-        self._timer = QTimer(self, singleShot=True, interval=0)
-        self._timer.timeout.connect(self._redraw)
-        model.theme_changed.connect(self.mark_dirty)
-
-    def draw(self) -> None:
-        """Draw what the model holds; made by each panel."""
-        raise NotImplementedError
-
-    def mark_dirty(self) -> None:
-        """Draw again soon, or when shown."""
-        self._dirty = True
-        if self.isVisible():
-            self._timer.start()
-
-    def new_trace(self) -> None:
-        """Draw the trace; another ray is seen whole, the same with other settings stays zoomed into."""
-        same, self._seen = same_ray(self._seen, self.model.trace), self.model.trace
-        if same:
-            self.mark_dirty()
-        else:
-            self.new_view()
 
     def new_view(self) -> None:
         """Draw something else: what was zoomed into is gone."""
         self.canvas.zoomed = False
         self.mark_dirty()
 
-    def showEvent(self, event: QShowEvent) -> None:
-        """Draw what changed while the panel was hidden."""
-        super().showEvent(event)
-        if self._dirty:
-            self._timer.start()
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Step by the arrow keys."""
-        if not step_by_key(self.model, event):
-            super().keyPressEvent(event)
-
     def changeEvent(self, event: QEvent) -> None:
         """Follow a change of the screen's resolution."""
         super().changeEvent(event)
         if event.type() == QEvent.Type.DevicePixelRatioChange:
             self.mark_dirty()
-
-    def _redraw(self) -> None:
-        if self._dirty and self.isVisible():
-            self._dirty = False
-            self.draw()

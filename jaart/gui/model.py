@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -61,7 +62,8 @@ class SceneModel(QObject):
         self.trace: Trace | None = None
         self.step = 0
         self.theme = "light"
-        self._worker = Worker(self)
+        self._worker, self._painter = Worker(self), Worker(self)
+        self._painter.failed.connect(self.failed)
         self._worker.progressed.connect(self.progressed)
         self._worker.failed.connect(self.failed)
         self._worker.said.connect(self.said)
@@ -69,8 +71,8 @@ class SceneModel(QObject):
 
     @property
     def idle(self) -> bool:
-        """Whether nothing is being read, rendered or traced."""
-        return self._worker.idle
+        """Whether nothing is being read, rendered, traced or drawn."""
+        return self._worker.idle and self._painter.idle
 
     @property
     def complete(self) -> bool:
@@ -153,9 +155,14 @@ class SceneModel(QObject):
             self.step = index
             self.step_changed.emit()
 
+    def draw_later(self, work: Callable[[], Any], done: Callable[[Any], None]) -> None:
+        """Have something drawn for a panel in a thread of its own; the newest drawing wins."""
+        self._painter.submit("figure", lambda job: work(), done, brief=True)
+
     def close(self) -> None:
-        """Cancel what runs and end the worker's thread."""
+        """Cancel what runs and end the threads."""
         self._worker.stop()
+        self._painter.stop()
 
     def _opened(self, scene: Scene, extent: Extent, camera: Camera | None) -> None:
         same = self.scene is not None and self.scene.source == scene.source and self.extent == extent

@@ -9,6 +9,7 @@ from qtpy.QtCore import QObject, QTimer, Signal
 
 from jaart.core.errors import FileError
 from jaart.core.io.atomic import replacing
+from jaart.gui.panel import Panel
 
 if TYPE_CHECKING:
     from jaart.gui.main_window import MainWindow
@@ -32,7 +33,9 @@ class Screenshot(QObject):
     def _look(self) -> None:
         model = self.window_.model
         traced = model.trace is not None or not self.picked
-        done = traced and model.idle and model.complete and self.window_.panels_ready
+        panels = [dock.panel for dock in self.window_.docks.values() if isinstance(dock.panel, Panel)]
+        done = (traced and model.idle and model.complete and self.window_.panels_ready
+                and not any(panel.pending for panel in panels))
         self._quiet = self._quiet + 1 if done else 0
         if self._quiet >= QUIET_TURNS:
             self._timer.stop()

@@ -5,40 +5,59 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from qtpy.QtGui import QResizeEvent
-from qtpy.QtWidgets import QFileDialog, QToolButton, QWidget
+import numpy as np
+from numpy.typing import NDArray
+from qtpy.QtCore import Qt, QTimer
+from qtpy.QtGui import QImage, QPixmap, QResizeEvent
+from qtpy.QtWidgets import QFileDialog, QLabel, QToolButton, QWidget
 
 from jaart.core.errors import FileError
 from jaart.core.io.atomic import replacing
 from jaart.core.statistics import Statistics, statistics, table
-from jaart.gui.figure_canvas import FigurePanel
 from jaart.gui.model import SceneModel
-from jaart.plot.statistics import draw_statistics, statistics_figure
+from jaart.gui.panel import Panel
+from jaart.plot.statistics import statistics_figure, statistics_pixels
+
+#: Milliseconds that a picture must stand before its statistics are drawn.
+PAUSE_MS = 500
 
 
-class StatisticsPanel(FigurePanel):
-    """Histograms of the picture's rays, their end states and errors."""
-
-    message = "Statistics of the picture appear here when it is done."
+class StatisticsPanel(Panel):
+    """Histograms of the picture's rays, their end states and errors, drawn in the worker's thread."""
 
     def __init__(self, model: SceneModel, parent: QWidget | None = None) -> None:
         super().__init__(model, parent)
+        self.picture = QLabel("Statistics of the picture appear here when it is done.", self)
+        self.picture.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.picture.setObjectName("weak")
         self.buttons = [self._button(kind) for kind in ("svg", "csv")]
-        self.canvas.resized.connect(self.mark_dirty)
+        self._later = QTimer(self, singleShot=True, interval=PAUSE_MS)
+        self._later.timeout.connect(super().mark_dirty)
         model.hits_changed.connect(self.mark_dirty)
 
+    def mark_dirty(self) -> None:
+        """Draw again once the picture has stood for a moment: the panels of the ray go first."""
+        self._later.start()
+
+    @property
+    def pending(self) -> bool:
+        """Whether it is seen but not yet drawn as the model is."""
+        return super().pending or self._later.isActive()
+
     def draw(self) -> None:
-        """Draw the statistics of a full picture; a coarse one leaves the last standing."""
+        """Have the statistics of a full picture drawn; a coarse one leaves the last standing."""
         current = self._current()
         for button in self.buttons:
             button.setEnabled(current is not None)
         if current is not None:
-            figure = self.canvas.figure
-            draw_statistics(figure, current, self.model.theme)
-            self.canvas.show_figure()
-            self._place()
-        elif self.model.hits is None:
-            self.canvas.say(self.message)
+            size, ratio, theme = (self.width(), self.height()), self.devicePixelRatioF(), self.model.theme
+            self.model.draw_later(lambda: statistics_pixels(current, theme, size, ratio), self._show)
+
+    def _show(self, pixels: NDArray[np.uint8]) -> None:
+        height, width, _ = pixels.shape
+        image = QImage(pixels.tobytes(), width, height, 4 * width, QImage.Format.Format_RGBA8888)
+        image.setDevicePixelRatio(self.devicePixelRatioF())
+        self.picture.setPixmap(QPixmap.fromImage(image))
 
     def export(self, path: str | Path) -> None:
         """Write the statistics as .svg or .csv.
@@ -56,12 +75,10 @@ class StatisticsPanel(FigurePanel):
         self.model.said.emit(f"Statistics written to {path}")
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Keep the buttons in their corner."""
+        """Draw for the new size; the export buttons stay at the right edge, one below the other."""
         super().resizeEvent(event)
-        self._place()
-
-    def _place(self) -> None:
-        """Export buttons at the right edge, one below the other."""
+        self.picture.setGeometry(self.rect())
+        self.mark_dirty()
         for row, button in enumerate(self.buttons):
             button.move(self.width() - button.width() - 6, 6 + row * (button.height() + 4))
             button.raise_()

@@ -6,8 +6,8 @@ from qtpy.QtCore import Qt, QTimer
 from qtpy.QtGui import QKeyEvent
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
-from jaart.gui.figure_canvas import step_by_key
 from jaart.gui.model import SceneModel
+from jaart.gui.panel import step_by_key
 from jaart.gui.theme import tabular
 from jaart.plot.style import LEGEND, OUTCOMES, THEMES
 

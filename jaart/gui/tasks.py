@@ -7,7 +7,6 @@ from os import PathLike
 import numpy as np
 
 from jaart.core.camera import Camera
-from jaart.core.errors import FileError
 from jaart.core.records import Hits, Quality, Trace
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings
@@ -22,9 +21,7 @@ def read(source: str | PathLike[str], frame: int | None, settings: Settings) -> 
     from jaart.core.io import load
 
     scene = load(source, frame)
-    if not len(prepare.surfels(scene, settings)):
-        raise FileError(source, "no surface: expected cells with levels between 0 and 1, or full beside empty ones",
-                        f"frame {scene.frame}" if scene.frames > 1 else "")
+    prepare.surfels(scene, settings)
     return scene, prepare.extent(scene, settings)
 
 

@@ -11,11 +11,12 @@ from typing import Any
 from qtpy.QtCore import QObject, Qt, Signal
 
 from jaart.core.errors import Cancelled, JaartError
+from jaart.gui.garbage import GarbageCollector
 
 log = logging.getLogger("jaart")
 
 #: Kinds of jobs, the most urgent first.
-KINDS = ("open", "picture", "trace")
+KINDS = ("open", "picture", "trace", "figure")
 
 
 class Job:
@@ -28,7 +29,7 @@ class Job:
     def __init__(self, worker: Worker, kind: str, work: Callable[[Job], Any], done: Callable[[Any], None],
                  partial: Callable[[Any], None] | None, brief: bool) -> None:
         self.kind, self.work, self.done, self.on_partial, self.brief = kind, work, done, partial, brief
-        self.cancel = threading.Event()
+        self.cancel, self.forgotten = threading.Event(), False
         self._post, self._superseded, self._shown, self._told = worker.posted.emit, False, False, 0.0
 
     def supersede(self) -> None:
@@ -72,6 +73,7 @@ class Worker(QObject):
         self._open: set[Job] = set()
         self._stop = False
         self._change = threading.Condition()
+        self._garbage = GarbageCollector(self)
         self.posted.connect(self._deliver, Qt.ConnectionType.QueuedConnection)
         self._thread = threading.Thread(target=self._loop, name="jaart worker", daemon=True)
         self._thread.start()
@@ -94,9 +96,11 @@ class Worker(QObject):
             self._change.notify()
 
     def cancel(self, kind: str) -> None:
-        """Stop the running job of a kind and forget the waiting one."""
+        """Stop the running job of a kind, forget the waiting one, and hand over nothing more of either."""
         with self._change:
             self._drop(kind)
+            for job in self._open:
+                job.forgotten |= job.kind == kind
             if self._running is not None and self._running.kind == kind:
                 self._running.cancel.set()
 
@@ -110,6 +114,7 @@ class Worker(QObject):
                 self._running.cancel.set()
             self._change.notify()
         self._thread.join()
+        self._garbage.stop()
         self._open.clear()
 
     def _drop(self, kind: str) -> None:
@@ -135,7 +140,7 @@ class Worker(QObject):
     def _deliver(self, job: Job, what: str, result: Any) -> None:
         if what in ("done", "failed", "cancelled"):
             self._open.discard(job)
-        if not (self._stop or (job.cancel.is_set() and what != "partial")):
+        if not (self._stop or job.forgotten or (job.cancel.is_set() and what != "partial")):
             self._hand_over(job, what, result)
         if self.idle:
             self.ended.emit()

@@ -97,12 +97,14 @@ def _cells(axes: Axes, trace: Trace, colours: Theme) -> None:
     from matplotlib import rc_context
 
     parts = np.stack([trace.borders[:-1], np.diff(trace.borders)], axis=1)
+    left, right = axes.get_xlim()  # hatching is slow, so only what a zoom of twice the width may show
+    seen = (parts.sum(axis=1) > 1.5 * left - 0.5 * right) & (parts[:, 0] < 1.5 * right - 0.5 * left)
     across = axes.get_xaxis_transform()
     axes.broken_barh(parts[::2].tolist(), (0, 1), transform=across, facecolor=colours.band, zorder=0)
     axes.vlines(trace.borders, 0, 1, transform=across, color=colours.grid, linewidth=0.7, zorder=0.5)
     for full in (False, True):
         for odd, hatch in enumerate(("/////", "\\\\\\\\\\")):
-            chosen = parts[(np.arange(len(parts)) % 2 == odd) & (trace.with_surfel == full)]
+            chosen = parts[seen & (np.arange(len(parts)) % 2 == odd) & (trace.with_surfel == full)]
             edge = colours.full_cell if full else colours.cell
             with rc_context({"hatch.linewidth": 1.7 if full else 0.4}):
                 axes.broken_barh(chosen.tolist(), (0, _STRIP), transform=across, zorder=2, hatch=hatch, edgecolor=edge,

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from jaart.core.colours import COLOURS
 from jaart.core.statistics import Histogram, Statistics
@@ -31,6 +32,20 @@ def statistics_figure(statistics: Statistics, theme: str = "light", size: tuple[
     figure = Figure(figsize=size)
     draw_statistics(figure, statistics, theme)
     return figure
+
+
+def statistics_pixels(statistics: Statistics, theme: str, size: tuple[int, int], ratio: float) -> NDArray[np.uint8]:
+    """The figure as pixels (height, width, RGBA), made without a window, in any thread.
+
+    size: (width, height) on the screen; ratio: pixels of the device for each of the screen.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    figure = statistics_figure(statistics, theme, (max(size[0], 10) / 100, max(size[1], 10) / 100))
+    figure.set_dpi(100 * ratio)
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.array(canvas.buffer_rgba())
 
 
 def draw_statistics(figure: Figure, statistics: Statistics, theme: str = "light") -> None:

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
-from conftest import PATIENCE, settle
+from patience import PATIENCE, settle
 from qtpy.QtCore import QPoint, QPointF, Qt
 from qtpy.QtGui import QColor, QWheelEvent
 from qtpy.QtWidgets import QApplication, QToolTip
@@ -281,7 +281,8 @@ def test_a_closed_analyzer_stays_closed(qtbot, standard, analyzer):
 
 def test_statistics_are_written_as_svg_and_csv(qtbot, standard, tmp_path):
     panel = shown(qtbot, StatisticsPanel(standard), 800, 240)
-    drawn(qtbot, panel, "rays hit")
+    qtbot.waitUntil(lambda: not panel.picture.pixmap().isNull(), timeout=PATIENCE)
+    assert panel.picture.pixmap().size() == panel.size() * panel.devicePixelRatioF()
     said = []
     standard.said.connect(said.append)
     panel.export(tmp_path / "numbers.csv")
