@@ -162,9 +162,14 @@ def on_faces(cell: Cell, origin: Vector, direction: Vector) -> list[Cell]:
     return [(cell[0] - i, cell[1] - j, cell[2] - k) for i, j, k in product(*below)]
 
 
+#: The lattice's outer faces belong to it, and rounding may lead this many cells beyond them.
+SLACK = 1e-9
+
+
 @dataclass
 class Rules:
-    """The numbers that end the search of a ray; lengths in cells but for the tolerance, in h."""
+    """The numbers that end the search of a ray; lengths in cells but for the tolerance, in h (in radii where the
+    radius is smaller)."""
 
     h: float = 0.8
     radius: float = 2.0
@@ -249,7 +254,8 @@ class Search:
             t = step.t_next
             if step.outcome == "continue":
                 x = along(origin, direction, t)
-                cell = cell_of(x)
+                i, j, k = (min(max(c, 0), n - 1) for c, n in zip(cell_of(x), self.extent, strict=True))
+                cell = i, j, k
                 end.near(min(abs(c - round(c)) for c, d in zip(x, direction, strict=True) if d != 0))
         return steps
 
@@ -278,15 +284,15 @@ class Search:
             return "cap"
         if not self.trusted(along(origin, direction, step.t_next), step.t_next, t_start, end):
             return "left_trust"
-        if _below(abs(step.t_next - step.t), rules.tolerance * rules.h, end):
+        if _below(abs(step.t_next - step.t), rules.tolerance * min(rules.h, rules.radius), end):
             near = _below(cloud.off_centre(step.x), rules.max_off_centre, end)
             return "converged" if near else "bounded"
         return "cap" if number == rules.max_iterations else "continue"
 
     def trusted(self, x: Vector, t: float, t_start: float, end: End) -> bool:
         """Whether the next point lies in the trust region, in the lattice and before the viewer."""
-        end.near(*x, *minus(x, self.extent))
-        inside = all(0 <= c < n for c, n in zip(x, self.extent, strict=True))
+        end.near(*(c + SLACK for c in x), *(c - n - SLACK for c, n in zip(x, self.extent, strict=True)))
+        inside = all(-SLACK <= c <= n + SLACK for c, n in zip(x, self.extent, strict=True))
         end.near(t)
         return t > 0 and _below(abs(t - t_start), self.rules.trust, end) and inside
 

@@ -73,7 +73,7 @@ def _subdivided(solids: Sequence[Solid], cells: NDArray[np.intp], subdivision: i
     inside = np.zeros((len(cells),) + (subdivision + 1,) * 3, dtype=bool)
     for solid in solids:
         low, high = solid.bounds
-        if (cells.max(axis=0) + 1 > low).all() and (cells.min(axis=0) < high).all():
+        if (cells.max(axis=0) + 1.001 > low).all() and (cells.min(axis=0) < high + 0.001).all():
             inside |= solid.holds(x[:, :, None, None], y[:, None, :, None], z[:, None, None, :])
     total = (inside.astype(np.float32) @ count) @ count @ count  # exact: multiples of 1/8 below 2^21
     return total.astype(np.float64) / subdivision**3

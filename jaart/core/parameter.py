@@ -69,7 +69,8 @@ class Parameter:
         try:
             return _CHECKS[self.kind](self, value)
         except (TypeError, ValueError, OverflowError):
-            raise SettingsError(f"{self.name} = {value!r}: expected {self.expected}") from None
+            shown = value if isinstance(value, Length) else repr(value)
+            raise SettingsError(f"{self.name} = {shown}: expected {self.expected}") from None
 
     @property
     def expected(self) -> str:
@@ -109,7 +110,9 @@ def _in_range(p: Parameter, number: float) -> float:
 
 
 def _check_choice(p: Parameter, value: Value) -> str:
-    raise ValueError
+    if isinstance(value, bool) or str(value) not in p.choices:
+        raise ValueError
+    return str(value)
 
 
 def _check_number(p: Parameter, value: Value) -> float:

@@ -13,13 +13,16 @@ Array = NDArray[np.float64]
 
 #: A hit farther than this (cells) from the exact one is a distance miss.
 TOO_FAR = 1.0
+#: A solid that ends on the lattice's faces is not cut off: cells that rounding may add.
+TOUCH = 1e-6
 
 
 def quality(hits: Hits, scene: Scene) -> Quality | None:
     """The errors of hits against the scene's solids, or None when it has no exact ones.
 
     Each false hit, false miss and distance miss adds a penalty of 1 in place of its error. Normals are
-    turned to the viewer first. Rays that cannot be traced (bad_ray) are left out.
+    turned to the viewer first. Rays that cannot be traced (bad_ray), and those that meet a solid where the
+    lattice cuts it off, are left out.
     """
     solids = prepare.solids(scene, hits.settings)
     if solids is None:
@@ -27,12 +30,20 @@ def quality(hits: Hits, scene: Scene) -> Quality | None:
     good = np.flatnonzero(hits.status != STATUS["bad_ray"])
     exact_t, exact_normal = np.full(len(hits), np.nan), np.full((len(hits), 3), np.nan)
     exact_t[good], exact_normal[good] = shapes.first_hit(solids, hits.origin[good], hits.direction[good])
-    return against(hits, exact_t, exact_normal)
+    met = hits.origin[good] + exact_t[good, None] * hits.direction[good]
+    beyond = ((met < -TOUCH) | (met > np.add(prepare.extent(scene, hits.settings), TOUCH))).any(axis=1)
+    counted = np.ones(len(hits), bool)
+    counted[good[beyond]] = False
+    return against(hits, exact_t, exact_normal, counted)
 
 
-def against(hits: Hits, exact_t: Array, exact_normal: Array) -> Quality:
-    """The errors of hits against exact ones: t (R,), NaN = no hit, and unit normals (R, 3)."""
-    hit, exact = hits.hit, np.isfinite(exact_t)
+def against(hits: Hits, exact_t: Array, exact_normal: Array, counted: NDArray[np.bool_] | None = None) -> Quality:
+    """The errors of hits against exact ones.
+
+    exact_t: (R,), NaN = no hit; exact_normal: (R, 3), unit length; counted: (R,) which rays matter, all when None.
+    """
+    counted = np.ones(len(hits), bool) if counted is None else counted
+    hit, exact = hits.hit & counted, np.isfinite(exact_t) & counted
     distance = np.where(hit & exact, np.abs(hits.t - exact_t), np.nan)
     both = np.flatnonzero(hit & exact)
     normal = turned(hits.normal[both], hits.direction[both])

@@ -46,7 +46,7 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
     settings = settings or Settings()
     job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays)
     warm_up()
-    ready = prepare.prepared(scene, settings)
+    ready = prepare.prepared(scene, settings, cancel)
     begin = time.perf_counter()
     out = columns_for(job.count)
     passes = coarse_passes(job.size) if picture and job.size else [(1, np.arange(job.count))]

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core.errors import FileError
 from jaart.core.shapes import Solid
 
 Array = NDArray[np.float64]
@@ -20,7 +21,7 @@ def frozen(values: Any) -> Array:
     """A read-only float64 array of the values; copies only what is not one already."""
     array = np.ascontiguousarray(values, dtype=np.float64)
     if array.flags.writeable:
-        array = array.copy() if array is values else array
+        array = array.copy() if isinstance(values, np.ndarray) and np.may_share_memory(array, values) else array
         array.flags.writeable = False
     return array
 
@@ -44,6 +45,7 @@ class Scene:
     gives them; model: exact solids if known; spacing, origin: physical size of a cell and corner
     of the lattice, for display and export (lengths are in cells elsewhere); frame, frames: which of
     a series; time: its time in seconds; notes: what was repaired or left out on reading.
+    Raises FileError for levels that are none.
     """
 
     source: str
@@ -55,8 +57,18 @@ class Scene:
     frames: int = 1
     time: float | None = None
     notes: tuple[str, ...] = ()
-    _kept: dict[Hashable, Any] = field(default_factory=dict, repr=False)
-    _lock: Any = field(default_factory=threading.RLock, repr=False)
+    _kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False)
+    _lock: Any = field(default_factory=threading.RLock, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if (self.levels is None) == (self.model is None):
+            raise FileError(self.source, "expected either fill levels or a model")
+        if self.levels is not None:
+            levels = frozen(self.levels)
+            if levels.ndim != 3 or not levels.size or not (levels.min() >= 0 and levels.max() <= 1):
+                raise FileError(self.source, f"expected levels (nx, ny, nz) from 0 to 1, found {levels.shape} values "
+                                             f"from {levels.min(initial=1):g} to {levels.max(initial=0):g}", "levels")
+            object.__setattr__(self, "levels", levels)
 
     @property
     def kind(self) -> str:

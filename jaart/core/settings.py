@@ -53,7 +53,9 @@ class Settings:
         help="How a ray finds the surface: iterate intersects it with the plane at x again and again.")
     tolerance: float = parameter(
         "number", 0.125, low=0, high=10, step=0.005, unit="h", group="Search", label="Tolerance",
-        stage="rays", source="[T 2.14]", help="A ray has arrived when its next step is shorter than this.")
+        stage="rays", source="[T 2.14]",
+        help="A ray has arrived when its next step is shorter than this; it counts in radii where the radius is "
+             "below h.")
     max_iterations: int = parameter(
         "integer", 20, low=1, high=10_000, step=1, group="Search", label="Iterations a start", stage="rays",
         source="[T §2.4.5, footnote 14]", help="After so many steps from one start the ray tries the next cell.")

@@ -35,7 +35,8 @@ def trace(scene: Scene, settings: Settings, origin: ArrayLike, direction: ArrayL
     ready = prepare.prepared(scene, settings)
     end, rows = _logged(ready, o, d)
     shape = ready.cells.empty.shape
-    cells, borders = _crossed(o, d, (shape[0], shape[1], shape[2]))
+    bad = end[0] == r.BAD_RAY
+    cells, borders = _crossed(o, d, (0, 0, 0) if bad else (shape[0], shape[1], shape[2]))
     near, weights = _neighbours(ready, rows)
     step = np.where(np.isfinite(rows[:, r.STEP]), rows[:, r.STEP], np.nan)
     status, t, point, normal = end[0], end[1], end[2], end[3]

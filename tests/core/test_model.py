@@ -82,6 +82,13 @@ def test_volumes_converge_to_the_analytic_ones() -> None:
     assert errors[3] < 0.003
 
 
+@pytest.mark.parametrize("piece", [1, 1 << 13, 1 << 17])
+def test_cells_beside_an_aligned_face_do_not_depend_on_the_pieces(piece: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    box = Model((Box((0.5, 0.5, 0.5), (0.5, 0.5, 0.5)),), 8)
+    monkeypatch.setattr("jaart.core.model.PIECE", piece)
+    assert np.allclose(fill(box, 8, "corners", 5), literal(box, 8, 5), rtol=0, atol=1e-15)
+
+
 def test_overlaps_count_once() -> None:
     twice = Model((*STANDARD.solids, *STANDARD.solids), 16)
     assert np.array_equal(fill(twice, 16, "corners", 4), fill(STANDARD, 16, "corners", 4))

@@ -7,13 +7,16 @@ import threading
 import numpy as np
 import pytest
 
+from jaart.core import prepare
 from jaart.core.camera import Camera
-from jaart.core.errors import Cancelled, FileError, RayError
+from jaart.core.errors import Cancelled, FileError, RayError, SettingsError
 from jaart.core.io import load
+from jaart.core.quality import quality
 from jaart.core.records import STATUS, Hits
 from jaart.core.render import render
-from jaart.core.scene import Scene, frozen
+from jaart.core.scene import Model, Scene, frozen
 from jaart.core.settings import Settings
+from jaart.core.shapes import Box
 from jaart.core.tiles import coarse_passes
 
 COLUMNS = ("t", "point", "normal", "energy", "off_centre", "iterations", "evaluations", "neighbours", "cells",
@@ -118,11 +121,80 @@ def test_rays_of_the_wrong_shape(standard: Scene) -> None:
         render(standard, rays=(np.zeros((2, 3)), np.zeros((3, 3))))
 
 
-@pytest.mark.parametrize("level", [0.0, 0.5, 1.0])
-def test_a_lattice_without_an_interface_is_refused(level: float) -> None:
+@pytest.mark.parametrize(("level", "says"), [(0.0, "no interface"), (1.0, "no interface"),
+                                            (0.5, "64 interface cells, but the level changes at none")])
+def test_a_lattice_without_a_surface_is_refused(level: float, says: str) -> None:
     scene = Scene("still.npz", levels=frozen(np.full((4, 4, 4), level)))
-    with pytest.raises(FileError, match=r"still\.npz: levels: no interface"):
+    with pytest.raises(FileError, match=r"still\.npz: levels: ") as error:
         render(scene)
+    assert says in str(error.value)
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_surfaces_on_the_outer_faces_are_hit_from_all_sides(axis: int, sign: float) -> None:
+    block = Scene("block.npz", levels=frozen(np.ones((8, 8, 8))))
+    origin, direction = np.array([[4.2, 4.3, 4.4]]), np.zeros((1, 3))
+    origin[0, axis], direction[0, axis] = 4.0 - 20 * sign, sign
+    hits = render(block, Settings(border="closed"), rays=(origin, direction))
+    assert hits.hit.all() and hits.t[0] == pytest.approx(16.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("centre", [(0.2, 0.5, 0.5), (0.8, 0.5, 0.5)])
+def test_mirrored_models_are_equally_good(centre: tuple[float, float, float]) -> None:
+    scene = Scene("box", model=Model((Box(centre, (0.4, 0.5, 0.5)),), 16))
+    y, z = np.meshgrid(np.linspace(6, 10, 9), np.linspace(6, 10, 9))
+    outside = -9.0 if centre[0] < 0.5 else 25.0
+    origins = np.stack([np.full(81, outside), y.ravel(), z.ravel()], axis=1)
+    hits = render(scene, Settings(border="closed"), rays=(origins, np.tile([-np.sign(outside), 0, 0], (81, 1))))
+    found = quality(hits, scene)
+    assert found is not None and found.relevant == 81 and found.delta < 0.01
+
+
+def test_the_precision_floor_is_a_hit(standard: Scene) -> None:
+    default, exact = (render(standard, Settings(tolerance=t, max_iterations=200), size=(64, 64)) for t in (0.125, 0.0))
+    assert (exact.status == STATUS["floor"]).sum() > 0.97 * default.hit.sum()
+    close = exact.hit & default.hit
+    assert np.abs(exact.energy[exact.status == STATUS["floor"]]).max() < 1e-13
+    assert np.median(np.abs(exact.t - default.t)[close]) < 0.1
+
+
+def test_h_that_is_no_length_any_more_is_refused(standard: Scene) -> None:
+    with pytest.raises(SettingsError, match="h = 1e-160: too small for coordinates up to 16 cells"):
+        render(standard, Settings(h=1e-160))
+
+
+def test_h_close_to_nothing_gives_the_planes_of_the_nearest_surfels(standard: Scene) -> None:
+    hits = render(standard, Settings(h=1e-90), size=(48, 48))
+    surfels = prepare.surfels(standard, hits.settings)
+    nearest = np.linalg.norm(hits.point[hits.hit][:, None] - surfels.points, axis=2).argmin(axis=1)
+    assert hits.hit.sum() > 50 and np.isfinite(hits.point[hits.hit]).all()
+    agree = np.abs((hits.normal[hits.hit] * surfels.normal[nearest]).sum(axis=1)) > 1 - 1e-12
+    assert agree.mean() > 0.8
+
+
+def test_a_wide_h_does_not_make_every_step_an_arrival(standard: Scene) -> None:
+    found = quality(render(standard, Settings(h=50), size=(48, 48)), standard)
+    assert found is not None and found.delta_p < 1.0
+
+
+def test_a_table_that_does_not_fit_is_refused(standard: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("jaart.core.memory.limit", lambda: 1 << 20)
+    with pytest.raises(SettingsError, match=r"radius = 5 cells: needs .* of memory"):
+        render(standard, Settings(radius=5), size=(4, 4))
+
+
+def test_a_radius_in_diagonals_is_held_to_the_range_of_a_radius(standard: Scene) -> None:
+    with pytest.raises(SettingsError, match=r"radius = 27\.7\d*: expected"):
+        render(standard, Settings(radius="1d"))
+
+
+def test_a_table_in_the_making_is_cancelled(standard: Scene) -> None:
+    cancel = threading.Event()
+    cancel.set()
+    with pytest.raises(Cancelled):
+        render(standard, Settings(radius=3.7), cancel=cancel)
+    assert render(standard, Settings(radius=3.7), size=(4, 4)).size == (4, 4)
 
 
 def test_a_model_changes_its_raster(standard: Scene) -> None:

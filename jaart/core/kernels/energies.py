@@ -17,7 +17,7 @@ from jaart.core.kernels.tangent import tangent
 
 
 @kernel(STRICT)
-def sample(cells: Cells, h: float, c: float, o: Vector, d: Vector, ts: Array, of_cell: NDArray[np.int32],
+def sample(cells: Cells, h: float, c: float, o: Vector, d: Vector, ts: Array, of_cell: NDArray[np.int64],
            energies: Array) -> None:
     """Write e_ts [T 2.20], e_oc [T 2.22] and e_M [T 2.18] at each t; NaN where no surfel is near.
 

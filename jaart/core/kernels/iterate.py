@@ -14,10 +14,13 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.records import Array, Cell, Cells, Search, Vector
 from jaart.core.kernels.tangent import tangent
-from jaart.core.kernels.traversal import inside
 
 #: A ray whose angle with the plane has a smaller sine runs along it.
 _PARALLEL = 1e-12
+#: The lattice's outer faces belong to it; points this many cells beyond them are there but for rounding.
+_SLACK = 1e-9
+#: Four units in the last place of 1.
+_ROUNDING = 8.9e-16
 
 #: (state, t, point, normal, last step, off-centre value, steps, surfels used)
 End = tuple[int, float, Vector, Vector, float, float, int, int]
@@ -40,6 +43,20 @@ def cell_of(start: Cell, x: Vector) -> Cell:
     """The cell that holds a point given relative to the centre of another cell."""
     return (start[0] + int(floor(x[0] + 0.5)), start[1] + int(floor(x[1] + 0.5)),
             start[2] + int(floor(x[2] + 0.5)))
+
+
+@kernel(STRICT)
+def in_reach(x: float, n: int) -> bool:
+    """Whether a coordinate lies within a lattice of n cells."""
+    return -_SLACK <= x <= n + _SLACK
+
+
+@kernel(STRICT)
+def held(cell: Cell, x: Vector, shape: Cell) -> tuple[Cell, bool]:
+    """The lattice's cell for a point in or on it, and whether it is; x in the lattice's coordinates."""
+    i, j, k = cell
+    inside = in_reach(x[0], shape[0]) and in_reach(x[1], shape[1]) and in_reach(x[2], shape[2])
+    return (min(max(i, 0), shape[0] - 1), min(max(j, 0), shape[1] - 1), min(max(k, 0), shape[2] - 1)), inside
 
 
 @kernel(STRICT)
@@ -70,12 +87,15 @@ def write_step(rows: Array, row: int, start: int, t: float, cell: Cell, x: Vecto
 
 
 @kernel(STRICT)
-def state_after(search: Search, s: float, t: float, step: float, off: float, in_reach: bool) -> int:
-    """The state after a step that led to s from the start (t from the origin): CONTINUE or an end."""
-    if not (in_reach and abs(s) <= search.trust and t > 0.0):
+def state_after(search: Search, s: float, t: float, step: float, slope: float, off: float, inside: bool) -> int:
+    """The state after a step that led to s from the start (t from the origin): CONTINUE or an end.
+
+    A step no longer than the rounding of f at the local coordinates, seen along the ray, says nothing.
+    """
+    if not (inside and abs(s) <= search.trust and t > 0.0):
         return r.LEFT_TRUST
     short = abs(step) < search.arrived
-    if not short and s - step != s:
+    if not short and abs(step * slope) > _ROUNDING * (abs(s) + search.h + 1.0):
         return r.CONTINUE
     if off > search.max_off_centre:
         return r.BOUNDED
@@ -111,9 +131,8 @@ def iterate(cells: Cells, search: Search, o: Vector, d: Vector, start: Cell, t_s
         if state == r.CONTINUE:
             s, f_before = s + step, abs(f)
             x = along(base, d, s)
-            cell = cell_of(start, x)
-            reach = inside(cell, cells.empty.shape)
-            state = state_after(search, s, t_start + s, step, off_centre, reach)
+            cell, inside = held(cell_of(start, x), in_lattice(start, x), cells.empty.shape)
+            state = state_after(search, s, t_start + s, step, slope, off_centre, inside)
         if state == r.CONVERGED or state == r.FLOOR:
             return state, t_start + s, in_lattice(start, x), n, step, off_centre, done + 1, used
         if state != r.CONTINUE:

@@ -34,13 +34,23 @@ def _user_cache() -> Path:
     return Path(os.environ.get("JAART_CACHE") or user_cache_path("jaart"))
 
 
-#: Where the machine code of these sources is kept.
+def _usable(folder: Path) -> bool:
+    """Whether the folder is there, or could be made, for us to write."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK)
+
+
+#: Where the machine code of these sources is kept, if it can be: else each process compiles them anew.
 CACHE = _user_cache() / f"kernels-{_sources_hash()}"
+_CACHED = _usable(CACHE)
 
 
 def first_time() -> bool:
-    """Whether the kernels are still to be compiled on this machine."""
-    return not any(CACHE.rglob("*.nbi"))
+    """Whether the kernels are still to be compiled."""
+    return not (_CACHED and any(CACHE.rglob("*.nbi")))
 
 
 def kernel(flags: set[str] = VECTOR, inline: bool = False) -> Callable[[F], F]:
@@ -54,7 +64,7 @@ def kernel(flags: set[str] = VECTOR, inline: bool = False) -> Callable[[F], F]:
         before = numba.config.CACHE_DIR
         numba.config.CACHE_DIR = str(CACHE)
         try:
-            return numba.njit(function, nogil=True, cache=True, fastmath=flags, error_model="numpy",
+            return numba.njit(function, nogil=True, cache=_CACHED, fastmath=flags, error_model="numpy",
                               forceinline=inline)
         finally:
             numba.config.CACHE_DIR = before

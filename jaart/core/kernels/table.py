@@ -20,35 +20,15 @@ def near_box(cell: int, offset: float, radius: float, n: int) -> tuple[int, int]
 
 
 @kernel(STRICT)
-def count_near(cells: Ints, offsets: Array, radius: float, shape: Cell,
-               first: NDArray[np.int64]) -> None:
-    """Write into first[c + 1] how many surfels lie within radius of the centre of cell c.
+def scan_near(cells: Ints, offsets: Array, normals: Array, begin: int, end: int, radius: float, shape: Cell,
+              first: NDArray[np.int64], counted: NDArray[np.int64], ids: Ints, columns: Array) -> None:
+    """Count the surfels begin … end near each cell and, when there is room for them, write them down.
 
-    cells, offsets: (N, 3) cell of each surfel and its position relative to that cell's centre.
+    cells, offsets, normals: (N, 3) cell of each surfel, its position relative to that cell's centre and its
+    normal; counted: surfels found near each cell so far; first, ids, columns: as in records.Cells, ids and
+    columns are written in place or have length 0. A cell's surfels keep their own order.
     """
-    for s in range(cells.shape[0]):
-        i0, i1 = near_box(cells[s, 0], offsets[s, 0], radius, shape[0])
-        j0, j1 = near_box(cells[s, 1], offsets[s, 1], radius, shape[1])
-        k0, k1 = near_box(cells[s, 2], offsets[s, 2], radius, shape[2])
-        for i in range(i0, i1):
-            x = (cells[s, 0] - i) + offsets[s, 0]
-            for j in range(j0, j1):
-                y = (cells[s, 1] - j) + offsets[s, 1]
-                for k in range(k0, k1):
-                    z = (cells[s, 2] - k) + offsets[s, 2]
-                    if x * x + y * y + z * z <= radius * radius:
-                        first[(i * shape[1] + j) * shape[2] + k + 1] += 1
-
-
-@kernel(STRICT)
-def write_near(cells: Ints, offsets: Array, normals: Array, radius: float, shape: Cell,
-               first: NDArray[np.int64], ids: Ints, columns: Array) -> None:
-    """Write the surfels near each cell, in their own order, and their numbers relative to its centre.
-
-    first, ids, columns: as in records.Cells; ids and columns are written in place.
-    """
-    written = np.zeros(first.shape[0] - 1, np.int32)
-    for s in range(cells.shape[0]):
+    for s in range(begin, end):
         i0, i1 = near_box(cells[s, 0], offsets[s, 0], radius, shape[0])
         j0, j1 = near_box(cells[s, 1], offsets[s, 1], radius, shape[1])
         k0, k1 = near_box(cells[s, 2], offsets[s, 2], radius, shape[2])
@@ -60,12 +40,13 @@ def write_near(cells: Ints, offsets: Array, normals: Array, radius: float, shape
                     z = (cells[s, 2] - k) + offsets[s, 2]
                     if x * x + y * y + z * z <= radius * radius:
                         c = (i * shape[1] + j) * shape[2] + k
-                        count, at = first[c + 1] - first[c], 6 * first[c] + written[c]
-                        ids[first[c] + written[c]] = s
-                        columns[at], columns[at + count], columns[at + 2 * count] = x, y, z
-                        for axis in range(3):
-                            columns[at + (3 + axis) * count] = normals[s, axis]
-                        written[c] += 1
+                        if ids.shape[0] > 0:
+                            n, at = first[c + 1] - first[c], 6 * first[c] + counted[c]
+                            ids[first[c] + counted[c]] = s
+                            columns[at], columns[at + n], columns[at + 2 * n] = x, y, z
+                            for axis in range(3):
+                                columns[at + (3 + axis) * n] = normals[s, axis]
+                        counted[c] += 1
 
 
 @kernel(STRICT)
