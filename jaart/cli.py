@@ -170,6 +170,8 @@ def trace(
     at, ray = _which_ray(pixel, origin, direction)
     typed.output(output, "--output", ".json", ".csv", ".svg")
     shape, settings = typed.size(size), typed.settings(preset, set_ or [])
+    if at is None and size != DEFAULT_SIZE:
+        print("jaart: note: --size has no meaning with --origin and --direction", file=sys.stderr)
     if at is not None:
         typed.check_pixel(at, shape)
     elif camera:

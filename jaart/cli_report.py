@@ -64,8 +64,8 @@ def hits_line(hits: Hits, quality: Quality | None = None) -> str:
     """One line on a picture or a list of rays, and how the rays ended."""
     evaluations = hits.evaluations.sum() / max(1, len(hits))
     shape = f"{hits.size[0]}x{hits.size[1]}: " if hits.size else ""
-    ends = ", ".join(f"{count} {name}" for name, count in hits.counts().items())
-    exact = "" if quality is None else (
+    ends = ", ".join(f"{count} {name}" for name, count in hits.counts().items()) or "no rays"
+    exact = "" if quality is None or not quality.relevant else (
         f"\n  against the exact solids: delta {quality.delta:.4f}, delta_p {quality.delta_p:.4f} cells, "
         f"delta_n {quality.delta_n:.4f}")
     return (f"{shape}{int(hits.hit.sum())} of {len(hits)} rays hit, {evaluations:.2f} evaluations a ray, "

@@ -20,7 +20,7 @@ from jaart.gui.model import SceneModel
 from jaart.gui.parameters import Parameters
 from jaart.gui.status import Status
 
-FILES = "Scenes (*.npz *.npy *.vti *.xml);;All files (*)"
+FILES = "Scenes (*.npz *.vti *.xml);;All files (*)"
 
 
 class MainWindow(QMainWindow):
