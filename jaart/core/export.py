@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 import jaart
 from jaart.core.io.atomic import replacing
-from jaart.core.records import STATUS_NAMES, Hits, Surfels, Trace
+from jaart.core.records import STATUS_NAMES, Hits, Trace
 from jaart.core.settings import PARAMETERS, Settings
+from jaart.core.surfels import Surfels
 
 Target = str | PathLike[str]
 

@@ -15,11 +15,10 @@ from jaart.core.kernels import table
 from jaart.core.kernels.records import Cell, Cells, Search
 from jaart.core.model import fill
 from jaart.core.parameter import Length
-from jaart.core.records import Surfels
 from jaart.core.scene import Array, Scene, frozen
 from jaart.core.settings import PARAMETERS, Settings
 from jaart.core.shapes import Solid
-from jaart.core.surfels import make_surfels
+from jaart.core.surfels import Surfels, make_surfels
 
 #: The table is made for so many surfels at a time.
 SURFELS_AT_ONCE = 1024

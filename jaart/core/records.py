@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from jaart.core.camera import Camera
 from jaart.core.settings import Settings
+from jaart.core.surfels import Surfels
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -18,29 +19,6 @@ Ints = NDArray[np.int32]
 STATUS_NAMES = ("converged", "background", "cap", "left_trust", "parallel", "few_neighbours",
                 "undefined_normal", "bounded", "floor", "undecided", "bad_ray")
 STATUS = {name: number for number, name in enumerate(STATUS_NAMES)}
-
-
-@dataclass(frozen=True, eq=False)
-class Surfels:
-    """Points with normals, one for each interface cell of a lattice.
-
-    cells: index (N, 3) of each surfel's cell; offset: point minus the cell's centre (N, 3), cells;
-    normal: unit normals (N, 3), out of the fluid; without_normal: interface cells dropped because
-    their gradient vanishes.
-    """
-
-    cells: Ints
-    offset: Array
-    normal: Array
-    without_normal: int = 0
-
-    @property
-    def points(self) -> Array:
-        """Positions (N, 3) in cells."""
-        return self.cells + 0.5 + self.offset
-
-    def __len__(self) -> int:
-        return len(self.cells)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from threading import Event
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jaart.core import memory, prepare
 from jaart.core.camera import Camera, check_size
@@ -22,7 +21,7 @@ from jaart.core.prepare import Prepared
 from jaart.core.records import Array, Hits
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings
-from jaart.core.tiles import Pixels, coarse_passes, tiles
+from jaart.core.tiles import Pixels, coarse_passes, columns_for, tiles
 from jaart.core.warm import warm_up
 
 #: What one ray and its hit take.
@@ -58,16 +57,6 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
             if picture and step > 1:
                 picture(_every(step, job, out, settings, ready.seconds, time.perf_counter() - begin))
     return _every(1, job, out, settings, ready.seconds, time.perf_counter() - begin)
-
-
-def columns_for(count: int) -> Out:
-    """Empty columns for so many rays."""
-    def numbers() -> NDArray[np.int32]:
-        return np.zeros(count, np.int32)
-
-    return Out(t=np.full(count, np.nan), point=np.full((count, 3), np.nan), normal=np.full((count, 3), np.nan),
-               energy=np.full(count, np.nan), off_centre=np.full(count, np.nan), iterations=numbers(),
-               evaluations=numbers(), neighbours=numbers(), cells=numbers(), status=np.zeros(count, np.uint8))
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,37 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from jaart.core.lattice import Mask, gradients, interface_cells
-from jaart.core.records import Surfels
 from jaart.core.scene import Array, frozen
 from jaart.core.settings import Settings
+
+
+@dataclass(frozen=True, eq=False)
+class Surfels:
+    """Points with normals, one for each interface cell of a lattice.
+
+    cells: index (N, 3) of each surfel's cell; offset: point minus the cell's centre (N, 3), cells;
+    normal: unit normals (N, 3), out of the fluid; without_normal: interface cells dropped because
+    their gradient vanishes.
+    """
+
+    cells: NDArray[np.int32]
+    offset: Array
+    normal: Array
+    without_normal: int = 0
+
+    @property
+    def points(self) -> Array:
+        """Positions (N, 3) in cells."""
+        return self.cells + 0.5 + self.offset
+
+    def __len__(self) -> int:
+        return len(self.cells)
 
 
 def make_surfels(levels: Array, settings: Settings) -> Surfels:

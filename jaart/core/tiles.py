@@ -1,9 +1,11 @@
-"""The order in which a picture's rays are traced: coarse first, in tiles for a pool of threads."""
+"""The columns that rays are written to, and the order of it: coarse first, in tiles for a pool of threads."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+
+from jaart.core.kernels.records import Out
 
 #: Rays in a tile: long enough to hide the cost of a task, short enough to stop soon.
 TILE = 4096
@@ -32,3 +34,13 @@ def coarse_passes(size: tuple[int, int]) -> list[tuple[int, Pixels]]:
 def tiles(pixels: Pixels) -> list[Pixels]:
     """The pixels in pieces of at most TILE."""
     return [pixels[i:i + TILE] for i in range(0, len(pixels), TILE)]
+
+
+def columns_for(count: int) -> Out:
+    """Empty columns for so many rays."""
+    def numbers() -> NDArray[np.int32]:
+        return np.zeros(count, np.int32)
+
+    return Out(t=np.full(count, np.nan), point=np.full((count, 3), np.nan), normal=np.full((count, 3), np.nan),
+               energy=np.full(count, np.nan), off_centre=np.full(count, np.nan), iterations=numbers(),
+               evaluations=numbers(), neighbours=numbers(), cells=numbers(), status=np.zeros(count, np.uint8))

@@ -10,7 +10,8 @@ import numpy as np
 from jaart.core.kernels import energies, jit, pinhole, ray, traversal
 from jaart.core.kernels.records import LOG_WIDTH, Search
 from jaart.core.prepare import cell_table
-from jaart.core.records import Surfels
+from jaart.core.surfels import Surfels
+from jaart.core.tiles import columns_for
 
 _LOCK = threading.Lock()
 
@@ -28,8 +29,6 @@ def warm_up() -> None:
 
 @functools.cache
 def _run_all() -> None:
-    from jaart.core.render import columns_for
-
     found = Surfels(np.array([[1, 1, 1], [1, 2, 1]], np.int32), np.zeros((2, 3)), np.eye(3)[[2, 2]])
     cells = cell_table(found, (3, 4, 3), 2.0)
     search = Search(h=0.8, arrived=0.1, cap=2, trust=2.0, growth=0, max_off_centre=0.3)

@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from jaart.core.projection import plane, section
-from jaart.core.records import Curves, Surfels, Trace
+from jaart.core.records import Curves, Trace
 from jaart.core.settings import Settings
+from jaart.core.surfels import Surfels
 
 NOTHING = np.empty(0)
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from jaart.core.records import Curves, Surfels, Trace
+from jaart.core.records import Curves, Trace
 from jaart.core.settings import Settings
+from jaart.core.surfels import Surfels
 
 H, RADIUS, TOLERANCE, BOUND, CAP = 0.8, 2.0, 0.1, 0.3, 20
 
