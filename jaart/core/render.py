@@ -134,8 +134,17 @@ def _trace_all(pool: ThreadPoolExecutor, ready: Prepared, job: _Job, pixels: Pix
         job.trace(ready, tile, out)
         return len(tile)
 
+    tasks = [pool.submit(trace_tile, tile) for tile in tiles(pixels)]
+    try:
+        _wait(tasks, watch)
+    except BaseException:  # an interrupt must not wait for the tiles that have not begun
+        pool.shutdown(cancel_futures=True)
+        raise
+
+
+def _wait(tasks: list[Future[int]], watch: _Watch) -> None:
+    """Wait for tiles, telling how far they are. Raises Cancelled when they were stopped."""
     done, told = watch.before, time.perf_counter()
-    tasks: list[Future[int]] = [pool.submit(trace_tile, tile) for tile in tiles(pixels)]
     for task in tasks:
         done += task.result()
         if watch.progress and time.perf_counter() - told > 0.1:
