@@ -205,11 +205,11 @@ def preview(scene: SceneName,
 
 
 def _load(source: str, frame: int | None, assignments: list[str] | None = None) -> Scene:
-    from jaart.core.io import load
+    from jaart.core.io import BUILT_IN, load
 
     scene = load(source, frame)
     typed.check_meaning(assignments or [], scene)
-    for note in scene.notes:
+    for note in () if source in BUILT_IN else scene.notes:
         print(f"jaart: note: {note}", file=sys.stderr)
     return scene
 

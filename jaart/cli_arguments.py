@@ -144,14 +144,17 @@ def rays(path: Path) -> tuple[Array, Array]:
     try:
         with zipfile.ZipFile(path) as zipped:
             archive = Archive(path, zipped)
-            return _vectors(archive, "origins"), _vectors(archive, "directions")
+            return _vectors(archive, "origins", "origin"), _vectors(archive, "directions", "direction")
     except DAMAGE as error:
         raise FileError(path, f"is no whole .npz file: {error}") from None
     except OSError as error:
         raise FileError(path, f"cannot be read: {error.strerror or error}") from None
 
 
-def _vectors(archive: Archive, name: str) -> Array:
+def _vectors(archive: Archive, name: str, as_written: str) -> Array:
+    """An array (R, 3) under its name, or under the one that --hits writes it with."""
+    if name not in archive and as_written in archive:
+        name = as_written
     if name not in archive:
         raise archive.error(name, "is missing; expected origins and directions (R, 3)")
     shape = archive.header(name).shape

@@ -19,10 +19,21 @@ def write_render(found: Hits, errors: Quality | None, map_: str, output: Path | 
         from jaart.core.shade import shade
 
         save_picture(shade(found, map_, errors), output)
-        print(f"wrote {output}")
+        print(f"wrote {output}{_range(found, errors, map_)}")
     if hits is not None:
         save_hits(found, hits)
         print(f"wrote {hits}")
+
+
+def _range(found: Hits, errors: Quality | None, map_: str) -> str:
+    """What the ends of a map's colours stand for."""
+    from jaart.core.maps import MAPS, scale
+
+    if map_ in ("shaded", "status"):
+        return ""
+    low, high = scale(map_, found, errors)
+    unit = f" {MAPS[map_].unit}" if MAPS[map_].unit else ""
+    return f", colours from {low:g} to {high:g}{unit}, what lies beyond has the last colour"
 
 
 def write_trace(followed: Trace, output: Path, up: tuple[float, float, float]) -> None:

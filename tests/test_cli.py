@@ -19,6 +19,7 @@ from jaart import cli_arguments
 from jaart.__main__ import main
 from jaart.core import prepare
 from jaart.core.records import STATUS_NAMES
+from jaart.core.resources import resource
 
 SMALL = ["--size", "40x30"]
 
@@ -281,7 +282,8 @@ def test_preview_names_a_picture_and_plots(capsys):
 # Interruption
 
 def test_ctrl_c_leaves_no_half_file(tmp_path):
-    command = [sys.executable, "-m", "jaart", "render", "splash", "--size", "5000x5000", "--hits", "h.npz",
+    splash = str(resource("splash.npz"))
+    command = [sys.executable, "-m", "jaart", "render", splash, "--size", "5000x5000", "--hits", "h.npz",
                "--output", "p.png", "--threads", "2"]
     process = subprocess.Popen(command, env={**os.environ, "PYTHONPATH": str(Path(jaart.__file__).parents[1])},
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

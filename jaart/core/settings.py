@@ -45,7 +45,8 @@ class Settings:
     radius: Length = parameter(
         "length", Length(2.0), low=0.5, high=16, step=0.25, unit="cells", group="Weight and area",
         label="Radius", stage="neighbours", source="[T §3.1.3]",
-        help="Radius of the neighbourhood. What it cuts off makes f jump at cell faces; 3 cells leave 1e-4 h.")
+        help="Radius of the neighbourhood, best 2.5 h or more: what it cuts off makes f jump at cell faces, and "
+             "holes open.")
 
     search: str = parameter(
         "choice", "iterate", choices=("iterate",), group="Search", label="Search", stage="rays",

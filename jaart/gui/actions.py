@@ -23,7 +23,9 @@ KEYS = """<table cellspacing="6">
 <tr><td>left drag</td><td>turn the scene</td></tr><tr><td>middle or Shift + drag</td><td>move it</td></tr>
 <tr><td>wheel, + and -</td><td>nearer and farther</td></tr><tr><td>click</td><td>pick the ray of a pixel</td></tr>
 <tr><td>arrow keys</td><td>move the picked pixel; with Shift by ten</td></tr>
-<tr><td>F</td><td>see the whole scene</td></tr><tr><td>Esc</td><td>forget the picked ray</td></tr></table>"""
+<tr><td>F</td><td>see the whole scene</td></tr><tr><td>Esc</td><td>forget the picked ray</td></tr>
+<tr><td>in the ray's panels</td><td>arrow keys, Home and End: its steps; wheel and drag: zoom and move</td></tr>
+<tr><td>Ctrl + O, S, D, Q</td><td>open, save the picture, dark theme, quit</td></tr></table>"""
 
 
 class Actions:

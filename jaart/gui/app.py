@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from jaart.gui.main_window import MainWindow
 
-#: What is opened when nothing is named, or when what was named cannot be read.
+#: What is opened when nothing is named.
 SAMPLE = "splash"
 
 
@@ -30,7 +30,7 @@ def run(source: str | PathLike[str] | None = None, settings: Settings | None = N
 
     source: a file or a built-in name, the sample when None; pick: pixel (x, y) of the picture;
     screenshot: save the window there once everything is drawn, and end. Raises JaartError without a
-    display or a system library, and, with screenshot, for what cannot be shown.
+    display or a system library, for a scene that cannot be read, and, with screenshot, for any failure.
     """
     check()
     logging.basicConfig(format="%(name)s: %(message)s")
@@ -51,9 +51,8 @@ def run(source: str | PathLike[str] | None = None, settings: Settings | None = N
     window.closed.connect(loop.quit)
     window.loader.finished.connect(garbage.set_aside)
     problems: list[str] = []
-    if screenshot is None:
-        fall_back_on_sample(window)
-    else:
+    end_without_a_scene(window, problems)
+    if screenshot is not None:
         window.model.failed.connect(problems.append)
         window.model.failed.connect(window.close)
         shot = Screenshot(window, Path(screenshot), pick is not None)
@@ -76,16 +75,14 @@ def _check_pick(pick: tuple[int, int] | None, size: tuple[int, int]) -> None:
                          f"0,0 to {size[0] - 1},{size[1] - 1}")
 
 
-def fall_back_on_sample(window: MainWindow) -> None:
-    """Open the sample when the first scene cannot be read, and leave the reason standing."""
-    model = window.model
-
+def end_without_a_scene(window: MainWindow, problems: list[str]) -> None:
+    """Close the window when its first scene cannot be read, and keep the reason."""
     def failed(message: str) -> None:
-        if model.scene is None:
-            model.scene_changed.connect(lambda: window.message.tell(message), _once())
-            model.open(SAMPLE)
+        if window.model.scene is None:
+            problems.append(message)
+            window.close()
 
-    model.failed.connect(failed, _once())
+    window.model.failed.connect(failed)
 
 
 def _once() -> Qt.ConnectionType:

@@ -121,12 +121,13 @@ class WordRow(Row):
         self.meant = about.default
         self.word: QCheckBox | None = None
         if about.choices:
-            self.word = QCheckBox(about.choices[0])
+            self.word = QCheckBox(f"as {about.choices[0]}")
+            self.word.setToolTip("Ticked: the value follows. Type or drag to set another.")
             self.word.toggled.connect(self._toggled)
             self.grid.addWidget(self.word, 1, 0)
 
     def set_meant(self, value: Any) -> None:
-        """The number that the word stands for at present, shown greyed and taken when the box is cleared."""
+        """The number that the word stands for at present, shown, and taken when the box is cleared."""
         self.meant = self.about.check(value)
         if isinstance(self.value, str):
             self.display(self.value)
@@ -138,12 +139,10 @@ class WordRow(Row):
     def _toggled(self, checked: bool) -> None:
         self.enter(self.about.choices[0] if checked else self.meant)
 
-    def _show_word(self, value: Any, *controls: QWidget) -> None:
+    def _show_word(self, value: Any) -> None:
         if self.word is not None:
             with QSignalBlocker(self.word):
                 self.word.setChecked(isinstance(value, str))
-        for control in controls:
-            control.setEnabled(not isinstance(value, str))
 
 
 class NumberRow(WordRow):
@@ -167,7 +166,7 @@ class NumberRow(WordRow):
         """Bring the controls to a value."""
         shown = self.number()
         self.box.set_text(text_of(shown) if not isinstance(shown, str) else "")
-        self._show_word(value, self.box, self.slider)
+        self._show_word(value)
         if not isinstance(shown, str):
             with QSignalBlocker(self.slider):
                 self.slider.setValue(round((plain(shown) - self.low) / self.about.step))
@@ -210,7 +209,7 @@ class VectorRow(WordRow):
         numbers = ["", "", ""] if isinstance(shown, str) else [text_of(n) for n in shown]
         for box, text in zip(self.boxes, numbers, strict=True):
             box.set_text(text)
-        self._show_word(value, *self.boxes)
+        self._show_word(value)
 
     def _typed(self) -> None:
         texts = [box.text().strip() for box in self.boxes]

@@ -49,9 +49,11 @@ class Parameters(QScrollArea):
             row.entered.connect(self.model.set_value)
         self.sections = [Section(group, list(rows))
                          for group, rows in groupby(self.rows.values(), key=lambda row: row.about.group)]
+        self._preset = next(iter(PRESETS))
         self.presets = QComboBox()
         self.presets.addItems(list(PRESETS))
-        self.presets.setToolTip("Whole sets of values; single ones can then be changed below.")
+        self.presets.setToolTip("Whole sets of values; single ones can then be changed below.\n"
+                                "thesis: as its source has it; best: what was measured to be best, so far the same.")
         self.presets.activated.connect(self._choose_preset)
         self._lay_out()
         for signal in (model.settings_changed, model.scene_changed, model.camera_changed):
@@ -84,24 +86,29 @@ class Parameters(QScrollArea):
             if value != row.value:
                 row.show_value(value)
             row.setVisible(row.about.matters(settings))
-        is_model = self.model.scene is not None and self.model.scene.model is not None
         for section in self.sections:
-            section.setVisible(section.title != "Model" or is_model)
+            section.setVisible(section.title != "Model" or self._is_model())
         self._show_preset()
 
+    def _is_model(self) -> bool:
+        return self.model.scene is not None and self.model.scene.model is not None
+
     def _show_preset(self) -> None:
-        values = self.model.settings
-        names = [name for name in PRESETS if preset(name) == values]
+        shown = [name for name, row in self.rows.items() if row.about.group != "Model" or self._is_model()]
+        names = [name for name in PRESETS
+                 if all(getattr(preset(name), n) == getattr(self.model.settings, n) for n in shown)]
+        names.sort(key=lambda name: name != self._preset)
         with QSignalBlocker(self.presets):
             self.presets.removeItem(self.presets.findText(OWN))
             if not names:
                 self.presets.addItem(OWN)
                 self.presets.setCurrentText(OWN)
-            elif self.presets.currentText() not in names:
+            else:
                 self.presets.setCurrentText(names[0])
 
     def _choose_preset(self) -> None:
         if self.presets.currentText() in PRESETS:
+            self._preset = self.presets.currentText()
             self.model.set_settings(preset(self.presets.currentText()))
 
 

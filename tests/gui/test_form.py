@@ -101,12 +101,27 @@ def test_arrow_keys_step_a_number_within_its_bounds(form, model):
 def test_a_word_is_a_box_to_tick(form, model):
     row = form.rows["trust"]
     assert row.word.isChecked()
-    assert not row.box.isEnabled()
     row.word.click()
     assert model.settings.trust == Length(2.0)
-    assert row.box.isEnabled()
     row.word.click()
     assert model.settings.trust == "radius"
+
+
+def test_typing_or_dragging_takes_the_place_of_a_word(form, model):
+    row = form.rows["trust"]
+    type_into(row.box, "3")
+    assert model.settings.trust == Length(3.0) and not row.word.isChecked()
+    row.word.click()
+    row.slider.setValue(row.slider.value() + 1)
+    assert model.settings.trust == Length(2.25) and not row.word.isChecked()
+
+
+def test_the_chosen_preset_stays_chosen(form, model):
+    assert form.presets.currentText() == "best"
+    model.set_value("h", 1.0)
+    assert form.presets.currentText() not in ("best", "thesis")
+    form.rows["h"].reset.click()
+    assert form.presets.currentText() == "best"
 
 
 def test_a_word_shows_the_number_that_it_stands_for(form, model):

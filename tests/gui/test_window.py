@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from patience import PATIENCE, settle
+from patience import settle
 from qtpy.QtCore import QMimeData, QPointF, Qt, QTimer, QUrl
 from qtpy.QtGui import QDropEvent, QImage, QPalette
 from qtpy.QtTest import QTest
@@ -209,17 +209,6 @@ def test_missing_libraries_are_named_by_their_packages(monkeypatch):
         libraries.check()
 
 
-def test_the_window_opens_the_sample_when_the_scene_cannot_be_read(qtbot, tmp_path):
-    from jaart.gui.app import fall_back_on_sample
-
-    window = MainWindow()
-    window.model.set_size(64, 64)
-    fall_back_on_sample(window)
-    window.show()
-    window.model.open(tmp_path / "missing.npz")
-    qtbot.waitUntil(lambda: window.model.complete, timeout=PATIENCE)
-    assert window.model.scene.source == app.SAMPLE
-    assert window.message.isVisible()
-    assert "missing.npz" in window.message.text.text()
-    window.close()
-    window.deleteLater()
+def test_a_first_scene_that_cannot_be_read_ends_the_program(qtbot, tmp_path):
+    with pytest.raises(JaartError, match=r"missing\.npz: no such file"):
+        app.run(str(tmp_path / "missing.npz"))
