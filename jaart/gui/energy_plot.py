@@ -8,7 +8,6 @@ from qtpy.QtWidgets import QToolButton, QWidget
 from jaart.gui.figure_canvas import FigurePanel
 from jaart.gui.model import SceneModel
 from jaart.plot.energy import draw_energy
-from jaart.plot.style import THEMES, blank
 
 
 class EnergyPlot(FigurePanel):
@@ -35,15 +34,7 @@ class EnergyPlot(FigurePanel):
         if trace is None:
             self.canvas.say(self.message)
             return
-        figure = self.canvas.figure
-        kept = (figure.axes[0].get_xlim(), figure.axes[0].get_ylim()) if self.canvas.zoomed and figure.axes else None
-        blank(figure, THEMES[self.model.theme])
-        axes = figure.add_subplot()
-        spots = draw_energy(axes, trace, self.model.step, self.model.theme, self.whole.isChecked())
-        if kept is not None:
-            axes.set_xlim(kept[0])
-            axes.set_ylim(kept[1])
-        self.canvas.show_figure(axes, spots)
+        self.draw_anew(lambda axes: draw_energy(axes, trace, self.model.step, self.model.theme, self.whole.isChecked()))
         self.whole.raise_()
         self._place()
 

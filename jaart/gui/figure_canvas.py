@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from qtpy.QtCore import QEvent, QPoint, Qt, Signal
@@ -11,7 +11,7 @@ from qtpy.QtWidgets import QLabel, QStackedLayout, QToolTip, QVBoxLayout, QWidge
 from jaart.gui.model import SceneModel
 from jaart.gui.panel import Panel
 from jaart.gui.turns import turns
-from jaart.plot.style import Spot, place
+from jaart.plot.style import THEMES, Spot, blank, place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -177,6 +177,18 @@ class FigurePanel(Panel):
         """Draw something else: what was zoomed into is gone."""
         self.canvas.zoomed = False
         self.mark_dirty()
+
+    def draw_anew(self, draw: Callable[[Axes], list[Spot]]) -> None:
+        """Draw into an empty axes of the theme; what was zoomed into stays in view."""
+        figure = self.canvas.figure
+        kept = (figure.axes[0].get_xlim(), figure.axes[0].get_ylim()) if self.canvas.zoomed and figure.axes else None
+        blank(figure, THEMES[self.model.theme])
+        axes = figure.add_subplot()
+        spots = draw(axes)
+        if kept is not None:
+            axes.set_xlim(kept[0], auto=None)
+            axes.set_ylim(kept[1], auto=None)
+        self.canvas.show_figure(axes, spots)
 
     def changeEvent(self, event: QEvent) -> None:
         """Follow a change of the screen's resolution."""

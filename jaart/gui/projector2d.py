@@ -7,7 +7,6 @@ from qtpy.QtWidgets import QWidget
 from jaart.gui.figure_canvas import FigurePanel
 from jaart.gui.model import SceneModel
 from jaart.plot.projection import draw_projection
-from jaart.plot.style import THEMES, blank
 
 
 class Projector2D(FigurePanel):
@@ -26,13 +25,5 @@ class Projector2D(FigurePanel):
         if trace is None:
             self.canvas.say(self.message)
             return
-        figure = self.canvas.figure
-        kept = (figure.axes[0].get_xlim(), figure.axes[0].get_ylim()) if self.canvas.zoomed and figure.axes else None
-        blank(figure, THEMES[self.model.theme])
-        axes = figure.add_subplot()
         up = (0.0, 0.0, 1.0) if camera is None else tuple(camera.frame()[1])
-        spots = draw_projection(axes, trace, self.model.step, self.model.theme, up)
-        if kept is not None:
-            axes.set_xlim(kept[0], auto=None)
-            axes.set_ylim(kept[1], auto=None)
-        self.canvas.show_figure(axes, spots)
+        self.draw_anew(lambda axes: draw_projection(axes, trace, self.model.step, self.model.theme, up))
