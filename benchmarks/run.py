@@ -8,11 +8,13 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks import quality, speed
+from benchmarks import jumps, quality, speed
 
 
 def main() -> None:
     quality.main()
+    print()
+    jumps.main()
     print()
     speed.main()
     if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):

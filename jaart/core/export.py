@@ -54,7 +54,7 @@ def trace_record(trace: Trace) -> dict[str, Any]:
     return {
         "jaart": jaart.__version__, "pixel": _plain(trace.pixel), "extent": _plain(trace.extent),
         "settings": settings_record(trace.settings),
-        "ray": _fields(trace, "origin", "direction", "status", "t", "point", "normal", "evaluations"),
+        "ray": _fields(trace, "origin", "direction", "status", "t", "point", "normal"),
         "steps": [_step(trace, i) for i in range(trace.steps)],
         "cells": _fields(trace, "cells", "borders", "with_surfel"),
         "curves": _fields(trace.curves, "t", "tangent", "off_centre", "mahalanobis"),

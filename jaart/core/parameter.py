@@ -102,6 +102,13 @@ def declared(record: type) -> dict[str, Parameter]:
             for f in dataclasses.fields(record)}
 
 
+def _plain(text: Value) -> Value:
+    """A value that is no text with an underscore, which Python would read as a number."""
+    if isinstance(text, str) and "_" in text:
+        raise ValueError
+    return text
+
+
 def _in_range(p: Parameter, number: float) -> float:
     below = number <= p.low if p.open_low else number < p.low
     if not math.isfinite(number) or below or number > p.high:
@@ -118,13 +125,13 @@ def _check_choice(p: Parameter, value: Value) -> str:
 def _check_number(p: Parameter, value: Value) -> float:
     if isinstance(value, bool):
         raise TypeError
-    return _in_range(p, float(value))
+    return _in_range(p, float(_plain(value)))
 
 
 def _check_integer(p: Parameter, value: Value) -> int:
     if isinstance(value, bool) or (isinstance(value, float) and value != int(value)):
         raise TypeError
-    return int(_in_range(p, int(value)))
+    return int(_in_range(p, int(_plain(value))))
 
 
 def _check_flag(p: Parameter, value: Value) -> bool:
@@ -151,7 +158,7 @@ def _check_vector(p: Parameter, value: Value) -> tuple[float, float, float]:
     numbers = value.split(",") if isinstance(value, str) else list(value)
     if len(numbers) != 3:
         raise ValueError
-    x, y, z = (_in_range(p, float(n)) for n in numbers)
+    x, y, z = (_in_range(p, float(_plain(n))) for n in numbers)
     return x, y, z
 
 

@@ -97,7 +97,6 @@ class Trace:
     point: Array
     normal: Array
     status: str
-    evaluations: int
     t_query: Array
     query: Array
     barycentre: Array

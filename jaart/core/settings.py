@@ -135,11 +135,6 @@ class Settings:
         last = STAGES.index(stage)
         return tuple(getattr(self, p.name) for p in PARAMETERS.values() if STAGES.index(p.stage) <= last)
 
-    def changed(self, default: Settings | None = None) -> dict[str, Any]:
-        """The values that differ from the default (or from other settings), by name."""
-        other = default or Settings()
-        return {name: getattr(self, name) for name in PARAMETERS if getattr(self, name) != getattr(other, name)}
-
 
 #: Every parameter by name, in the order of the form.
 PARAMETERS: dict[str, Parameter] = declared(Settings)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -42,12 +44,12 @@ def trace(scene: Scene, settings: Settings, origin: ArrayLike, direction: ArrayL
     status, t, point, normal = end[0], end[1], end[2], end[3]
     return Trace(
         origin=frozen(o), direction=frozen(d), t=t, point=frozen(point), normal=frozen(normal),
-        status=STATUS_NAMES[status], evaluations=len(rows), t_query=frozen(rows[:, r.T]),
+        status=STATUS_NAMES[status], t_query=frozen(rows[:, r.T]),
         query=frozen(rows[:, r.X:r.Z + 1]), barycentre=frozen(rows[:, r.AX:r.AZ + 1]),
         step_normal=frozen(rows[:, r.NX:r.NZ + 1]), t_next=frozen(rows[:, r.T] + step),
         next_point=frozen(rows[:, r.X:r.Z + 1] + step[:, None] * d), energy=frozen(step),
         off_centre=frozen(rows[:, r.OFF]), weight_sum=frozen(np.exp(rows[:, r.WEIGHT])),
-        start=rows[:, r.START].astype(np.int32), step_cell=_step_cells(rows),
+        start=_whole(rows[:, r.START]), step_cell=_step_cells(rows),
         outcome=tuple("continue" if e == r.CONTINUE else STATUS_NAMES[int(e)] for e in rows[:, r.END]),
         neighbours=near, weights=weights, cells=cells, borders=frozen(borders),
         with_surfel=ready.cells.empty[tuple(cells.T)] == 0, surfels=ready.surfels,
@@ -76,15 +78,21 @@ def _logged(ready: Prepared, o: Array, d: Array) -> tuple[r.RayEnd, Array]:
         room = end[7]
 
 
+def _whole(numbers: NDArray[Any]) -> Ints:
+    whole = numbers.astype(np.int32)
+    whole.flags.writeable = False
+    return whole
+
+
 def _step_cells(rows: Array) -> Ints:
-    return rows[:, r.CELL_I:r.CELL_K + 1].astype(np.int32)
+    return _whole(rows[:, r.CELL_I:r.CELL_K + 1])
 
 
 def _crossed(o: Array, d: Array, shape: tuple[int, int, int]) -> tuple[Ints, Array]:
     """All cells (C, 3) that a ray crosses, and the t where it crosses into each and out of the last."""
     cells, borders = np.empty((sum(shape) + 3, 3), np.int32), np.empty(sum(shape) + 4)
     n = traversal.crossed(o, d, shape, cells, borders)
-    return cells[:n], borders[:n + 1] if n else borders[:0]
+    return _whole(cells[:n]), borders[:n + 1] if n else borders[:0]
 
 
 def _neighbours(ready: Prepared, rows: Array) -> tuple[tuple[NDArray[np.int64], ...], tuple[Array, ...]]:

@@ -72,7 +72,12 @@ class SceneModel(QObject):
     @property
     def idle(self) -> bool:
         """Whether nothing is being read, rendered, traced or drawn."""
-        return self._worker.idle and self._painter.idle
+        return not self.computing and self._painter.idle
+
+    @property
+    def computing(self) -> bool:
+        """Whether something is being read, rendered or traced."""
+        return not self._worker.idle
 
     @property
     def complete(self) -> bool:

@@ -43,7 +43,7 @@ class Status(QStatusBar):
             self.figures.setText("")
 
     def _progress(self, share: float) -> None:
-        if self.model.idle:
+        if not self.model.computing:
             return
         self.bar.setVisible(share < 1)
         self.bar.setValue(round(100 * share))

@@ -22,7 +22,7 @@ def one_step(origin, direction, t, barycentre, normal):
     energy = n @ (a - x) / (n @ direction)
     return Trace(
         origin=origin, direction=direction, t=np.nan, point=np.full(3, np.nan), normal=np.full(3, np.nan), status="cap",
-        evaluations=1, t_query=np.array([t]), query=x[None], barycentre=a[None], step_normal=n[None],
+        t_query=np.array([t]), query=x[None], barycentre=a[None], step_normal=n[None],
         t_next=np.array([t + energy]), next_point=(x + energy * direction)[None], energy=np.array([energy]),
         off_centre=np.array([np.linalg.norm(a - x)]), weight_sum=np.ones(1), start=np.zeros(1, np.int32),
         step_cell=np.floor(x)[None].astype(np.int32), outcome=("cap",), neighbours=(np.empty(0, np.int64),),

@@ -32,14 +32,14 @@ def test_thesis_preset_has_the_values_of_the_thesis() -> None:
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_presets_are_valid(name: str) -> None:
-    assert preset(name).changed(Settings(**PRESETS[name])) == {}
+    assert preset(name) == Settings(**PRESETS[name])
 
 
 def test_parse_reads_texts_on_top_of_a_base() -> None:
     base = Settings(h=Length(1.5))
     s = parse(["radius = 3", "light=1,2,3", "raster=32", "trust=radius", "bail=growth"], base)
-    assert s.changed(base) == {"radius": Length(3.0), "light": (1.0, 2.0, 3.0), "raster": 32, "bail": "growth"}
-    assert s.h == Length(1.5)
+    assert s == base.replace(radius=3, light=(1.0, 2.0, 3.0), raster=32, bail="growth")
+    assert (s.h, s.radius) == (Length(1.5), Length(3.0))
     assert parse([]) == Settings()
 
 
@@ -47,7 +47,8 @@ def test_parse_reads_texts_on_top_of_a_base() -> None:
     ("h", "expected name=value"), ("h=", "h = ''"), ("h=0", "> 0"), ("h=nan", "finite"),
     ("radus=2", "did you mean radius"),
     ("zzz=2", "no setting is called 'zzz'"), ("weight=cubic", "expected gaussian"), ("raster=1", ">= 2"),
-    ("max_iterations=0", ">= 1"), ("tolerance=-1", ">= 0"), ("light=1,2", "x,y,z or headlight"),
+    ("max_iterations=0", ">= 1"), ("max_iterations=1_0", "whole number"), ("tolerance=1_0", "finite number"),
+    ("light=1_0,0,0", "x,y,z"), ("tolerance=-1", ">= 0"), ("light=1,2", "x,y,z or headlight"),
 ])
 def test_parse_names_what_is_wrong(text: str, says: str) -> None:
     with pytest.raises(SettingsError) as error:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pytest
 from patience import settle
@@ -212,3 +214,14 @@ def test_missing_libraries_are_named_by_their_packages(monkeypatch):
 def test_a_first_scene_that_cannot_be_read_ends_the_program(qtbot, tmp_path):
     with pytest.raises(JaartError, match=r"missing\.npz: no such file"):
         app.run(str(tmp_path / "missing.npz"))
+
+
+def test_drawing_a_panel_is_no_progress_of_the_picture(qtbot, window):
+    settle(qtbot, window.model)
+    hold, bar = threading.Event(), window.statusBar().bar
+    window.model.draw_later(hold.wait, lambda _: None)
+    assert not window.model.idle and not window.model.computing
+    window.model.progressed.emit(0.0)
+    assert not bar.isVisible()
+    hold.set()
+    settle(qtbot, window.model)

@@ -111,7 +111,7 @@ def _record(steps, surfels, origin, direction, cells, borders, with_surfel, rast
     return Trace(
         origin=origin, direction=direction, t=t, point=origin + t * direction,
         normal=steps[-1]["normal"] if status == "converged" else np.full(3, np.nan), status=status,
-        evaluations=len(steps), t_query=column("t"), query=query, barycentre=query + off,
+        t_query=column("t"), query=query, barycentre=query + off,
         step_normal=column("normal", (3,)), t_next=column("next"),
         next_point=origin + column("next")[:, None] * direction, energy=column("energy"),
         off_centre=np.linalg.norm(off, axis=1), weight_sum=column("sum"),

@@ -8,7 +8,7 @@ from jaart.core.kernels.jit import kernel
 from jaart.core.kernels.records import CONTINUE, UNDEFINED_NORMAL, Near, Vector
 from jaart.core.kernels.sums import nearest, shifted_tangent_sums, square_distance, tangent_sums
 
-#: Below this Σθ the sums are done again with shifted weights (a distance of about 11 h).
+#: Below this Σθ the sums are done again with shifted weights (a distance of about 12 h).
 _FAINT = 1e-60
 #: |Σθn| below this share of Σθ leaves no normal: opposite surfels cancel.
 _CANCELLED = 1e-8
