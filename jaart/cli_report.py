@@ -27,6 +27,24 @@ def versions() -> str:
 
 def scene_record(scene: Scene, settings: Settings) -> dict[str, Any]:
     """What a scene holds, in plain numbers and words; lengths in cells, spacing and origin as in the file."""
+    return _cloud_record(scene) if scene.kind == "cloud" else _lattice_record(scene, settings)
+
+
+def _cloud_record(scene: Scene) -> dict[str, Any]:
+    """Lengths in the cloud's own units; spacing: mean distance to the nearest point; h: what is proposed."""
+    from jaart.core import cloud
+
+    assert scene.points is not None
+    low, high = cloud.bounds(scene)
+    return {
+        "source": scene.source, "kind": scene.kind, "points": len(scene.points), "normals": scene.normals is not None,
+        "duplicates": scene.merged, "low": low.tolist(), "high": high.tolist(),
+        "diagonal": cloud.diagonal(scene), "spacing": cloud.spacing(scene), "auto_h": cloud.auto_h(scene),
+        "notes": list(scene.notes),
+    }
+
+
+def _lattice_record(scene: Scene, settings: Settings) -> dict[str, Any]:
     from jaart.core import lattice, prepare
 
     levels = prepare.levels(scene, settings)
@@ -44,8 +62,28 @@ def scene_record(scene: Scene, settings: Settings) -> dict[str, Any]:
 
 def scene_table(record: dict[str, Any]) -> str:
     """The same for people."""
+    rows = (_cloud_rows if record["kind"] == "cloud" else _lattice_rows)(record)
+    rows += [("note", note) for note in record["notes"]]
+    return "\n".join([record["source"], *(f"  {name:<16} {value}" for name, value in rows)])
+
+
+def _cloud_rows(record: dict[str, Any]) -> list[tuple[str, Any]]:
+    size = " × ".join(f"{high - low:g}" for low, high in zip(record["low"], record["high"], strict=True))
+    return [
+        ("kind", record["kind"]),
+        ("points", record["points"]),
+        ("normals", "one for each point" if record["normals"] else "none"),
+        ("size", f"{size}, diagonal {record['diagonal']:g}"),
+        ("from", _words(record["low"])),
+        ("to", _words(record["high"])),
+        ("spacing", f"{record['spacing']:.4g}, mean distance to the nearest point"),
+        ("proposed h", f"{record['auto_h']:.4g}"),
+    ]
+
+
+def _lattice_rows(record: dict[str, Any]) -> list[tuple[str, Any]]:
     time = "" if record["time"] is None else f", {record['time']:g} s"
-    rows = [
+    return [
         ("kind", record["kind"]),
         ("size", "×".join(str(n) for n in record["size"]) + f" = {record['cells']} cells"),
         ("interface cells", record["interface_cells"]),
@@ -55,9 +93,7 @@ def scene_table(record: dict[str, Any]) -> str:
         ("origin", ", ".join(f"{v:g}" for v in record["origin"])),
         ("frame", f"{record['frame']} of 0 to {record['frames'] - 1}{time}"),
         *(("exact solid", " ".join(f"{k} {_words(v)}" for k, v in s.items())) for s in record["solids"] or ()),
-        *(("note", note) for note in record["notes"]),
     ]
-    return "\n".join([record["source"], *(f"  {name:<16} {value}" for name, value in rows)])
 
 
 def hits_line(hits: Hits, quality: Quality | None = None) -> str:

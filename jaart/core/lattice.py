@@ -1,4 +1,4 @@
-"""Lattices of fill levels: which cells hold the interface, and how the levels change."""
+"""Lattices of fill levels: which cells hold the interface."""
 
 from __future__ import annotations
 
@@ -24,26 +24,6 @@ def interface_cells(levels: Array, neighbours: str = "6", border: str = "open") 
         beside = _spread(empty, 0) | _spread(empty, 1) | _spread(empty, 2)
     full = levels >= 1
     return ((levels > 0) & ~full) | (full & beside[1:-1, 1:-1, 1:-1])
-
-
-def gradients(levels: Array, border: str = "open", cells: NDArray[np.integer] | None = None) -> Array:
-    """Change of the level per cell along x, y, z, by central differences [T 3.1].
-
-    levels: (nx, ny, nz); cells: indices (N, 3) of the cells wanted, all when None. border: "open"
-    takes one-sided differences at the border [T 3.2], "closed" central ones with level 0 outside.
-    Returns (N, 3), or (nx, ny, nz, 3). Along an axis with one cell the gradient is 0.
-    """
-    index = np.indices(levels.shape) if cells is None else np.asarray(cells).T
-    if border == "closed":
-        levels, index = np.pad(levels, 1), index + 1
-    result = np.empty((*index.shape[1:], 3))
-    for axis in range(3):
-        ahead, behind = list(index), list(index)
-        ahead[axis] = np.minimum(index[axis] + 1, levels.shape[axis] - 1)
-        behind[axis] = np.maximum(index[axis] - 1, 0)
-        width = np.maximum(ahead[axis] - behind[axis], 1)
-        result[..., axis] = (levels[tuple(ahead)] - levels[tuple(behind)]) / width
-    return result
 
 
 def _spread(mask: Mask, axis: int) -> Mask:

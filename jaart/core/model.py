@@ -1,29 +1,23 @@
-"""Exact solids filled into a lattice [T §3.3.3, Algorithms 3 and 4]."""
+"""Exact solids filled into a lattice: by the sources' corner vote, or accurately."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-import numpy as np
-from numpy.typing import NDArray
-
 from jaart.core import memory
 from jaart.core.errors import SettingsError
+from jaart.core.fill_accurate import accurate
+from jaart.core.fill_corners import corners
 from jaart.core.scene import Array, Model
-from jaart.core.shapes import Mask, Solid
 
-#: How many corners of sub-cells are looked at in one piece: small enough for the processor's cache.
-PIECE = 1 << 17
+FILLINGS = ("accurate", "corners")
 
 
 def fill(model: Model, raster: int, filling: str, subdivision: int) -> Array:
     """Fill levels (raster, raster, raster) of a model's solids, in [0, 1].
 
-    filling: "corners", the 8-corner vote [T Algorithms 3, 4]; subdivision: sub-cells along each edge
-    of an interface cell. Solids are closed (a corner on a surface is inside) and united, so that a
-    corner in two of them counts once. A cell that holds none of its 8 corners stays empty, as in
-    [T]: a solid that pokes through a face, or lies within a cell, without reaching a corner is missed.
-    Raises SettingsError for another filling and for a raster that does not fit into memory.
+    filling: "accurate", each level to 1e-6, or "corners", the 8-corner vote [T Algorithms 3, 4];
+    subdivision: sub-cells along each edge of an interface cell, for "corners". Solids are united: what
+    two of them hold counts once. Raises SettingsError for another filling and for a raster that does not
+    fit into memory.
     """
     if filling not in FILLINGS:
         raise SettingsError(f"filling = {filling!r}: expected {' or '.join(FILLINGS)}")
@@ -31,52 +25,5 @@ def fill(model: Model, raster: int, filling: str, subdivision: int) -> Array:
     if needed > memory.limit():
         raise SettingsError(f"raster = {raster}: needs {memory.words(needed)} of memory, "
                             f"more than the {memory.words(memory.limit())} it may take")
-    return FILLINGS[filling]([s.scaled(raster) for s in model.solids], raster, subdivision)
-
-
-def _corners(solids: Sequence[Solid], raster: int, subdivision: int) -> Array:
-    """Algorithm 3, solids in cells. A cell with all corners in one convex solid needs no sub-cells."""
-    whole = np.zeros((raster,) * 3, dtype=bool)
-    touched = np.zeros((raster,) * 3, dtype=bool)
-    edge = np.arange(raster + 1.0)
-    for solid in solids:
-        held = solid.holds(edge[:, None, None], edge[None, :, None], edge[None, None, :])
-        whole |= _over_corners(np.logical_and, held)
-        touched |= _over_corners(np.logical_or, held)
-    levels = whole.astype(np.float64)
-    cells = np.argwhere(touched & ~whole)
-    step = max(1, PIECE // (subdivision + 1) ** 3)
-    for start in range(0, len(cells), step):
-        piece = cells[start:start + step]
-        levels[tuple(piece.T)] = _subdivided(solids, piece, subdivision)
-    return levels
-
-
-def _over_corners(combine: np.ufunc, held: Mask) -> Mask:
-    """And, or or of the 8 corners of each cell, axis by axis."""
-    for axis in range(3):
-        here, there = np.arange(held.shape[axis] - 1), np.arange(1, held.shape[axis])
-        held = combine(held.take(here, axis), held.take(there, axis))
-    return held
-
-
-def _subdivided(solids: Sequence[Solid], cells: NDArray[np.intp], subdivision: int) -> Array:
-    """Mean of the corner votes of all sub-cells of each cell (N, 3) [Algorithm 4].
-
-    Neighbouring sub-cells share corners: one inside the cell counts in both of them along each axis,
-    one on its face once.
-    """
-    count = np.ones(subdivision + 1, dtype=np.float32)
-    count[[0, -1]] = 0.5
-    ticks = np.arange(subdivision + 1) / subdivision
-    x, y, z = (cells[:, axis, None] + ticks for axis in range(3))
-    inside = np.zeros((len(cells),) + (subdivision + 1,) * 3, dtype=bool)
-    for solid in solids:
-        low, high = solid.bounds
-        if (cells.max(axis=0) + 1.001 > low).all() and (cells.min(axis=0) < high + 0.001).all():
-            inside |= solid.holds(x[:, :, None, None], y[:, None, :, None], z[:, None, None, :])
-    total = (inside.astype(np.float32) @ count) @ count @ count  # exact: multiples of 1/8 below 2^21
-    return total.astype(np.float64) / subdivision**3
-
-
-FILLINGS = {"corners": _corners}
+    solids = [solid.scaled(raster) for solid in model.solids]
+    return accurate(solids, raster) if filling == "accurate" else corners(solids, raster, subdivision)

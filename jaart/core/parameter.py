@@ -11,11 +11,14 @@ from typing import Any, Literal
 
 from jaart.core.errors import SettingsError
 
-Kind = Literal["choice", "number", "integer", "flag", "length", "vector"]
+Kind = Literal["choice", "number", "integer", "flag", "length", "vector", "vectors"]
 Value = Any
 
 #: Stages of the computation in their order; a parameter names the first one it enters.
 STAGES = ("levels", "surfels", "neighbours", "rays", "trace", "shade")
+
+#: Kinds of scenes.
+KINDS = ("lattice", "model", "cloud")
 
 _LENGTH = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([ds]?)\s*$")
 
@@ -43,7 +46,8 @@ class Parameter:
     group: its heading in the form; label, help: for people; unit: "" when it has none;
     source: the equation it enters; stage: the first stage that uses it (see STAGES);
     choices: of a choice, or words that stand for a value; low, high: bounds (low is excluded when
-    open_low); step: of a slider; when: whether the setting has a meaning beside the others.
+    open_low); step: of a slider; when: whether the setting has a meaning beside the others; scenes: the
+    kinds of scenes in which it has one.
     """
 
     name: str
@@ -61,6 +65,7 @@ class Parameter:
     open_low: bool = False
     step: float = 0.0
     when: Callable[[Any], bool] | None = None
+    scenes: tuple[str, ...] = KINDS
 
     def check(self, value: Value) -> Value:
         """The value in its own type. Raises SettingsError, naming the parameter, when it cannot be."""
@@ -75,7 +80,7 @@ class Parameter:
     @property
     def expected(self) -> str:
         """What may be typed, in words."""
-        words = {"flag": "true or false", "vector": "x,y,z", "integer": "a whole number",
+        words = {"flag": "true or false", "vector": "x,y,z", "vectors": "x,y,z or several of them apart by ;", "integer": "a whole number",
                  "number": "a finite number", "choice": "",
                  "length": "a finite number, or one with d (diagonals) or s (spacings)"}[self.kind]
         parts = [w for w in (words, " or ".join(self.choices)) if w]
@@ -162,7 +167,17 @@ def _check_vector(p: Parameter, value: Value) -> tuple[float, float, float]:
     return x, y, z
 
 
+def _check_vectors(p: Parameter, value: Value) -> tuple[tuple[float, float, float], ...]:
+    several = value.split(";") if isinstance(value, str) else list(value)
+    if several and isinstance(several[0], int | float):
+        several = [several]
+    if not several:
+        raise ValueError
+    return tuple(_check_vector(p, one) for one in several)
+
+
 _CHECKS: dict[str, Callable[[Parameter, Value], Value]] = {
     "choice": _check_choice, "number": _check_number, "integer": _check_integer,
     "flag": _check_flag, "length": _check_length, "vector": _check_vector,
+    "vectors": _check_vectors,
 }

@@ -6,44 +6,41 @@ import time
 from dataclasses import dataclass
 from threading import Event
 
-import numpy as np
-from numpy.typing import NDArray
-
-from jaart.core import memory
-from jaart.core.errors import Cancelled, FileError, SettingsError
-from jaart.core.kernels import table
-from jaart.core.kernels.records import Cell, Cells, Search
+from jaart.core import extents, meaning
+from jaart.core.assemble import plan_of
+from jaart.core.balls import Cloud, CloudTracer
+from jaart.core.cell_table import cell_table
+from jaart.core.chosen import Chosen
+from jaart.core.cloud_surfels import Points, cloud_of, points_of
+from jaart.core.cylinder import cylinder_tracer
+from jaart.core.errors import FileError
+from jaart.core.extents import extent, raster
+from jaart.core.groups.search import STRETCHES
+from jaart.core.groups.surface import MESHES
+from jaart.core.kernels.records import Cells
+from jaart.core.mesh_tracer import mesh_tracer
 from jaart.core.model import fill
-from jaart.core.parameter import Length
 from jaart.core.scene import Array, Scene, frozen
-from jaart.core.settings import PARAMETERS, Settings
+from jaart.core.settings import Settings
 from jaart.core.shapes import Solid
 from jaart.core.surfels import Surfels, make_surfels
+from jaart.core.tracers import LatticeTracer, Tracer
 
-#: The table is made for so many surfels at a time.
-SURFELS_AT_ONCE = 1024
-#: A smaller h, as a share of the largest coordinate, is no length any more: its square underflows.
-SMALLEST_H = 1e-100
+__all__ = ["Prepared", "cells", "extent", "levels", "prepared", "raster", "solids", "surfels"]
 
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
     """A scene ready to be traced.
 
-    cells, search: what the kernels are handed; surfels: those of the lattice; seconds: wall time that
-    the stages took which were not kept from before.
+    tracer: what rays are sent through; surfels: its points with normals; values: what the settings come to;
+    seconds: wall time that the stages took which were not kept from before.
     """
 
-    cells: Cells
-    search: Search
-    surfels: Surfels
+    tracer: Tracer
+    surfels: Surfels | Points
+    values: Chosen
     seconds: float
-
-
-def raster(scene: Scene, settings: Settings) -> int:
-    """Cells along each edge of a model's lattice."""
-    assert scene.model is not None
-    return scene.model.raster if settings.raster == "file" else int(settings.raster)
 
 
 def levels(scene: Scene, settings: Settings) -> Array:
@@ -54,12 +51,6 @@ def levels(scene: Scene, settings: Settings) -> Array:
         return scene.levels
     return scene.once("levels", settings.key("levels"), lambda: frozen(
         fill(model, raster(scene, settings), settings.filling, settings.subdivision)))
-
-
-def extent(scene: Scene, settings: Settings) -> tuple[float, float, float]:
-    """Size of the scene in cells; it begins at (0, 0, 0)."""
-    shape = (raster(scene, settings),) * 3 if scene.levels is None else scene.levels.shape
-    return float(shape[0]), float(shape[1]), float(shape[2])
 
 
 def solids(scene: Scene, settings: Settings) -> tuple[Solid, ...] | None:
@@ -86,80 +77,56 @@ def _no_surface(found: Surfels) -> str:
     return "no interface: expected a cell with a level between 0 and 1, or a full cell beside an empty one"
 
 
-def length(name: str, scene: Scene, settings: Settings) -> float:
-    """A setting's length in cells: of the lattice's diagonal ("d"), of a cell ("s") or as it is.
-
-    Raises SettingsError where that is out of the setting's range.
-    """
-    value: Length = getattr(settings, name)
-    resolved = value.resolve(float(np.linalg.norm(extent(scene, settings))), 1.0)
-    if value.unit:
-        PARAMETERS[name].check(Length(resolved))
-    return resolved
-
-
-def cells(scene: Scene, settings: Settings, cancel: Event | None = None) -> Cells:
-    """The cell_ball neighbour table and the field of empty space."""
+def cells(scene: Scene, settings: Settings, values: Chosen, cancel: Event | None = None) -> Cells:
+    """The neighbourhoods of a lattice's cells and the field of empty space."""
     def make() -> Cells:
         shape = levels(scene, settings).shape
-        return cell_table(surfels(scene, settings), (shape[0], shape[1], shape[2]),
-                          length("radius", scene, settings), cancel)
+        return cell_table(surfels(scene, settings), (shape[0], shape[1], shape[2]), values, settings.k, cancel)
 
-    return scene.once("cells", settings.key("neighbours"), make)
-
-
-def cell_table(found: Surfels, shape: Cell, radius: float, cancel: Event | None = None) -> Cells:
-    """Every cell's surfels within the radius of its centre, in contiguous columns [T §3.1.3].
-
-    shape: cells along each axis; radius: in cells. Raises SettingsError when the table would not fit into
-    memory, Cancelled after cancel was set.
-    """
-    nobody, nothing = np.empty(0, np.int32), np.empty(0)
-    first = np.zeros(shape[0] * shape[1] * shape[2] + 1, np.int64)
-    _scan(found, radius, shape, first, first[1:], nobody, nothing, cancel)
-    np.cumsum(first, out=first)
-    needed = int(first[-1]) * (6 * 8 + 4)
-    if needed > memory.limit():
-        raise SettingsError(f"radius = {radius:g} cells: needs {memory.words(needed)} of memory, more than the "
-                            f"{memory.words(memory.limit())} it may take")
-    ids, columns = np.empty(first[-1], np.int32), np.empty(6 * first[-1])
-    _scan(found, radius, shape, first, np.zeros(len(first) - 1, np.int64), ids, columns, cancel)
-    empty = np.full(shape, 255, np.uint8)
-    empty[tuple(found.cells.T)] = 0
-    table.fill_empty(empty)
-    return Cells(empty, first, ids, columns)
+    return scene.once("cells", (settings.key("neighbours"), values.radius), make)
 
 
-def _scan(found: Surfels, radius: float, shape: Cell, first: NDArray[np.int64], counted: NDArray[np.int64],
-          ids: NDArray[np.int32], columns: Array, cancel: Event | None) -> None:
-    """Count or write the surfels near each cell, a few surfels at a time so that it can be cancelled."""
-    index, offset, normal = np.array(found.cells, np.int32), np.array(found.offset), np.array(found.normal)
-    for begin in range(0, len(found), SURFELS_AT_ONCE):
-        if cancel is not None and cancel.is_set():
-            raise Cancelled("the neighbour table was cancelled")
-        table.scan_near(index, offset, normal, begin, min(begin + SURFELS_AT_ONCE, len(found)), radius, shape,
-                        first, counted, ids, columns)
+def tracer(scene: Scene, settings: Settings, values: Chosen, cancel: Event | None = None) -> Tracer:
+    """What rays are sent through: made of the stages that the settings ask for."""
+    if scene.kind == "cloud":
+        return cloud_tracer(scene, settings, values)
+    if values.method in MESHES:
+        return mesh_tracer(scene, settings, values, plan_of(scene, settings, values), levels(scene, settings),
+                           lambda: cells(scene, settings, values, cancel), cancel)
+    if values.method == "cylinder":
+        ball = settings.replace(neighbourhood="cell_ball")
+        return cylinder_tracer(values, plan_of(scene, settings, values), lambda near: cells(scene, ball, near, cancel))
+    made = cells(scene, settings, values, cancel)
+    stretches = values.search in STRETCHES
+    uniform = settings.step if settings.traversal == "uniform" else 0.0
+    return LatticeTracer(made._replace(stretches=int(stretches), uniform=uniform), plan_of(scene, settings, values))
 
 
-def search(scene: Scene, settings: Settings) -> Search:
-    """The settings of the iteration as the kernels take them, lengths in cells.
+def balls(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
+    """A cloud's points in a grid, and the balls around them."""
+    key = (settings.key("neighbours"), values.neighbourhood, values.radius, meaning.needs_normals(scene, settings, values))
+    return scene.once("balls", key, lambda: cloud_of(scene, settings, values))
 
-    The tolerance counts in h, but in radii where the radius is smaller: what h does ends there. Raises
-    SettingsError for an h so small that no number of cells is left of it.
-    """
-    h, radius = length("h", scene, settings), length("radius", scene, settings)
-    largest = max(extent(scene, settings))
-    if h < SMALLEST_H * largest:
-        raise SettingsError(f"h = {settings.h}: too small for coordinates up to {largest:g} cells, "
-                            f"expected at least {SMALLEST_H * largest:g}")
-    trust = radius if isinstance(settings.trust, str) else length("trust", scene, settings)
-    return Search(h=h, arrived=settings.tolerance * min(h, radius), cap=settings.max_iterations, trust=trust,
-                  growth=int(settings.bail == "growth"), max_off_centre=length("max_off_centre", scene, settings))
+
+def cloud_tracer(scene: Scene, settings: Settings, values: Chosen) -> CloudTracer:
+    """A cloud's balls, with what earlier rays of the same settings asked for."""
+    plan, made = plan_of(scene, settings, values), balls(scene, settings, values)
+    stretches = values.search in STRETCHES
+
+    return scene.once("cloud_tracer", (id(made), plan), lambda: CloudTracer(made, plan, stretches, not stretches))
+
+
+def points(scene: Scene, settings: Settings, values: Chosen) -> Surfels | Points:
+    """The surfels of a lattice, or a cloud's points."""
+    return points_of(scene, settings, values) if scene.kind == "cloud" else surfels(scene, settings)
 
 
 def prepared(scene: Scene, settings: Settings, cancel: Event | None = None) -> Prepared:
-    """Every stage that rays need; what was made before is kept. Raises Cancelled after cancel was set."""
+    """Every stage that rays need; what was made before is kept.
+
+    Raises SettingsError for settings that make no sense in the scene, Cancelled after cancel was set.
+    """
     begin = time.perf_counter()
-    wanted = search(scene, settings)
-    made = cells(scene, settings, cancel)
-    return Prepared(made, wanted, surfels(scene, settings), time.perf_counter() - begin)
+    values = meaning.check(scene, settings)
+    made = tracer(scene, settings, values, cancel)
+    return Prepared(made, points(scene, settings, values), values, time.perf_counter() - begin)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from jaart.core.camera import Camera
 from jaart.core.settings import Settings
+from jaart.core.cloud_surfels import Points
 from jaart.core.surfels import Surfels
 
 Array = NDArray[np.float64]
@@ -17,7 +18,8 @@ Ints = NDArray[np.int32]
 
 #: Named ends of a ray; the position in the tuple is the number in `Hits.status`.
 STATUS_NAMES = ("converged", "background", "cap", "left_trust", "parallel", "few_neighbours",
-                "undefined_normal", "bounded", "floor", "undecided", "bad_ray")
+                "undefined_normal", "bounded", "floor", "undecided", "bad_ray", "bounded_weight", "bounded_nearest",
+                "bounded_angle", "bounded_gap")
 STATUS = {name: number for number, name in enumerate(STATUS_NAMES)}
 
 
@@ -28,7 +30,8 @@ class Hits:
     origin, direction: (R, 3); t: distance along the unit direction, NaN = no hit; point, normal: (R, 3),
     NaN = no hit; energy: length of the last step |e_ts| [T 2.20]; off_centre: |a(x) - x| [T 2.22];
     iterations: steps of the last start; evaluations: steps of all starts; neighbours: surfels summed
-    over the evaluations; cells: cells visited (skipped ones are not); status: index into STATUS_NAMES.
+    over the evaluations; cells: cells or balls visited (skipped ones are not); lowered: evaluations whose
+    polynomial has fewer degrees than asked for; status: index into STATUS_NAMES.
     size: (width, height) of a picture, row by row from the top, None for a list of rays.
     prep_s, ray_s: wall seconds of preparation and of all rays.
     """
@@ -44,6 +47,7 @@ class Hits:
     evaluations: Ints
     neighbours: Ints
     cells: Ints
+    lowered: Ints
     status: NDArray[np.uint8]
     settings: Settings
     camera: Camera | None = None
@@ -69,13 +73,15 @@ class Hits:
 class Curves:
     """Energies sampled along a ray; NaN where no surfel is near.
 
-    t: (K,); tangent: signed step e_ts [T 2.20]; off_centre: e_oc [T 2.22]; mahalanobis: e_M [T 2.18].
+    t: (K,); tangent: signed step e_ts [T 2.20]; off_centre: e_oc [T 2.22]; mahalanobis: e_M [T 2.18];
+    angle: e_angle [T 2.23].
     """
 
     t: Array
     tangent: Array
     off_centre: Array
     mahalanobis: Array
+    angle: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +120,7 @@ class Trace:
     cells: Ints
     borders: Array
     with_surfel: NDArray[np.bool_]
-    surfels: Surfels
+    surfels: Surfels | Points
     curves: Curves
     settings: Settings
     extent: tuple[float, float, float]

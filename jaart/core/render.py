@@ -15,7 +15,6 @@ from jaart.core import memory, prepare
 from jaart.core.camera import Camera, check_size
 from jaart.core.errors import Cancelled, RayError
 from jaart.core.kernels.pinhole import View, write_rays
-from jaart.core.kernels.ray import trace_rays
 from jaart.core.kernels.records import Out
 from jaart.core.prepare import Prepared
 from jaart.core.records import Array, Hits
@@ -33,18 +32,19 @@ Size = tuple[int, int]
 def render(scene: Scene, settings: Settings | None = None, camera: Camera | None = None,
            size: Size = (512, 512), *, rays: tuple[Array, Array] | None = None, threads: int | None = None,
            progress: Callable[[int, int], None] | None = None, cancel: Event | None = None,
-           picture: Callable[[Hits], None] | None = None) -> Hits:
+           picture: Callable[[Hits], None] | None = None, any_hit: bool = False) -> Hits:
     """Where every ray of a picture meets the surface.
 
     camera: the whole scene in view when None; size: (width, height); rays: origins and directions (R, 3)
     in cells instead of a camera, directions of any length; threads: as many as the machine has when None;
     progress(done, all rays) is called from the caller's thread; cancel: set it to stop;
-    picture: called with coarse pictures, every 8th, 4th and 2nd pixel, while the work goes on.
+    picture: called with coarse pictures, every 8th, 4th and 2nd pixel, while the work goes on; any_hit: one that
+    is found sooner will do for the first, as shadows need.
     Raises RayError for a picture or rays that cannot be, Cancelled after cancel was set.
     """
     settings = settings or Settings()
-    job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays)
-    warm_up()
+    job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays, any_hit)
+    warm_up(scene, settings)
     ready = prepare.prepared(scene, settings, cancel)
     begin = time.perf_counter()
     out = columns_for(job.count)
@@ -63,7 +63,8 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
 class _Job:
     """The rays to trace: those of a camera, written tile by tile, or a list.
 
-    origins, directions: (R, 3); view: the camera as the kernels take it, None for a list.
+    origins, directions: (R, 3); view: the camera as the kernels take it, None for a list; any_hit: not only the
+    first hit will do.
     """
 
     origins: Array
@@ -71,6 +72,7 @@ class _Job:
     camera: Camera | None = None
     size: Size | None = None
     view: View | None = None
+    any_hit: bool = False
 
     @property
     def count(self) -> int:
@@ -81,7 +83,7 @@ class _Job:
         """Trace some of the rays into their rows of the columns."""
         if self.view is not None:
             write_rays(self.view, pixels, pixels, self.origins, self.directions)
-        trace_rays(ready.cells, ready.search, self.origins, self.directions, pixels, out)
+        ready.tracer.trace(self.origins, self.directions, pixels, out, any_hit=self.any_hit)
 
 
 @dataclass(frozen=True)
@@ -108,11 +110,11 @@ def _camera_job(scene: Scene, settings: Settings, camera: Camera | None, size: S
     return _Job(np.empty((count, 3)), np.empty((count, 3)), camera, size, camera.view(size))
 
 
-def _list_job(rays: tuple[Array, Array]) -> _Job:
+def _list_job(rays: tuple[Array, Array], any_hit: bool) -> _Job:
     origins, directions = (np.array(a, dtype=np.float64) for a in rays)
     if origins.ndim != 2 or origins.shape[1] != 3 or origins.shape != directions.shape:
         raise RayError(f"rays: expected origins and directions (R, 3), found {origins.shape} and {directions.shape}")
-    return _Job(origins, unit(directions))
+    return _Job(origins, unit(directions), any_hit=any_hit)
 
 
 def unit(directions: Array) -> Array:

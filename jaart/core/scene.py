@@ -1,4 +1,4 @@
-"""What a file holds: a lattice of fill levels, or exact solids to be filled into one."""
+"""What a file holds: a lattice of fill levels, exact solids to be filled into one, or a cloud of points."""
 
 from __future__ import annotations
 
@@ -15,6 +15,11 @@ from jaart.core.shapes import Solid
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
+
+#: Larger coordinates, and clouds smaller than its inverse, would overflow where they are squared.
+LARGEST = 1e100
+#: How far the square of a unit normal may be from 1.
+UNIT = 1e-9
 
 
 def frozen(values: Any) -> Array:
@@ -41,39 +46,44 @@ class Model:
 class Scene:
     """One scene, frozen; what it costs to derive is kept in it (see `once`).
 
-    source: path or built-in name; levels: fill levels (nx, ny, nz) in [0, 1], None where a model
-    gives them; model: exact solids if known; spacing, origin: physical size of a cell and corner
-    of the lattice, for display and export (lengths are in cells elsewhere); frame, frames: which of
-    a series; time: its time in seconds; notes: what was repaired or left out on reading.
-    Raises FileError for levels that are none.
+    It holds one of three. levels: fill levels (nx, ny, nz) in [0, 1]; model: exact solids; points:
+    a cloud (N, 3) in its own units, N >= 1, with or without unit normals (N, 3).
+    source: path or built-in name; spacing, origin: physical size of a cell and corner of the lattice,
+    for display and export (lengths are in cells elsewhere); frame, frames: which of a series; time:
+    its time in seconds; merged: exact duplicates of points left out; notes: what was repaired or left out
+    on reading.
+    Raises FileError for anything else.
     """
 
     source: str
     levels: Array | None = None
     model: Model | None = None
+    points: Array | None = None
+    normals: Array | None = None
     spacing: tuple[float, float, float] = (1.0, 1.0, 1.0)
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     frame: int = 0
     frames: int = 1
     time: float | None = None
+    merged: int = 0
     notes: tuple[str, ...] = ()
     _kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False)
     _lock: Any = field(default_factory=threading.RLock, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        if (self.levels is None) == (self.model is None):
-            raise FileError(self.source, "expected either fill levels or a model")
-        if self.levels is not None:
-            levels = frozen(self.levels)
-            if levels.ndim != 3 or not levels.size or not (levels.min() >= 0 and levels.max() <= 1):
-                raise FileError(self.source, f"expected levels (nx, ny, nz) from 0 to 1, found {levels.shape} values "
-                                             f"from {levels.min(initial=1):g} to {levels.max(initial=0):g}", "levels")
-            object.__setattr__(self, "levels", levels)
+        if sum(held is not None for held in (self.levels, self.model, self.points)) != 1:
+            raise FileError(self.source, "expected either fill levels, a model or points")
+        if self.normals is not None and self.points is None:
+            raise FileError(self.source, "expected no normals without points", "normals")
+        for name, check in (("levels", _check_levels), ("points", _check_points), ("normals", _check_normals)):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, frozen(getattr(self, name)))
+                check(self)
 
     @property
     def kind(self) -> str:
-        """lattice or model."""
-        return "lattice" if self.model is None else "model"
+        """lattice, model or cloud."""
+        return "cloud" if self.points is not None else "lattice" if self.model is None else "model"
 
     def once(self, stage: str, key: Hashable, make: Callable[[], T]) -> T:
         """The result of a stage, made on first use; only the newest key of each stage is kept."""
@@ -84,3 +94,33 @@ class Scene:
                 self._kept[stage] = kept
             result: T = kept[1]
             return result
+
+
+def _check_levels(scene: Scene) -> None:
+    levels = scene.levels
+    assert levels is not None
+    if levels.ndim != 3 or not levels.size or not (levels.min() >= 0 and levels.max() <= 1):
+        raise FileError(scene.source, f"expected levels (nx, ny, nz) from 0 to 1, found {levels.shape} values "
+                                      f"from {levels.min(initial=1):g} to {levels.max(initial=0):g}", "levels")
+
+
+def _check_points(scene: Scene) -> None:
+    points = scene.points
+    assert points is not None
+    if points.ndim != 2 or points.shape[1] != 3 or not len(points):
+        raise FileError(scene.source, f"expected points (N, 3), at least one, found {points.shape}", "points")
+    if not (largest := np.abs(points).max()) <= LARGEST:
+        raise FileError(scene.source, f"expected coordinates up to {LARGEST:g}, found {largest:g}", "points")
+    if 0 < (size := np.ptp(points, axis=0).max()) < 1 / LARGEST:
+        raise FileError(scene.source, f"expected a cloud larger than {1 / LARGEST:g}, found {size:g}", "points")
+
+
+def _check_normals(scene: Scene) -> None:
+    normals = scene.normals
+    assert normals is not None and scene.points is not None
+    if normals.shape != scene.points.shape:
+        raise FileError(scene.source, f"expected one for each of {len(scene.points)} points, found {normals.shape}",
+                        "normals")
+    off = np.abs((normals * normals).sum(axis=1) - 1)
+    if not off.max() <= UNIT:
+        raise FileError(scene.source, f"expected unit vectors, not so at [{(~(off <= UNIT)).argmax()}]", "normals")

@@ -1,4 +1,4 @@
-"""The settings: every parameter declared once, with its unit, range, help and source equation."""
+"""The settings: one record of all parameters, which the groups declare, and presets of whole sets."""
 
 from __future__ import annotations
 
@@ -8,116 +8,17 @@ from dataclasses import dataclass
 from typing import Any
 
 from jaart.core.errors import SettingsError
-from jaart.core.parameter import STAGES, Length, Parameter, declared, parameter
-
-
-def _phong(settings: Settings) -> bool:
-    return settings.shading == "phong"
+from jaart.core.groups.scenes import CloudSettings, LatticeSettings, ModelSettings
+from jaart.core.groups.search import BoundarySettings, SearchSettings
+from jaart.core.groups.shading import ShadingSettings
+from jaart.core.groups.surface import SurfaceSettings, WeightSettings
+from jaart.core.parameter import STAGES, Parameter, declared
 
 
 @dataclass(frozen=True, kw_only=True)
-class Settings:
-    """What to compute. Lengths are in cells of a lattice; see `PARAMETERS` for units and sources."""
-
-    method: str = parameter(
-        "choice", "tangent", choices=("tangent",), group="Surface", label="Surface", stage="rays",
-        source="[T 2.15, 2.16; A 5]",
-        help="The surface that is shown: tangent is the zero set of f(x) = <n(x), a(x) - x>.")
-    mahalanobis_c: float = parameter(
-        "number", 0.25, low=0, high=1, step=0.05, group="Surface", label="Mahalanobis c", stage="trace",
-        source="[T 2.17]",
-        help="Share of the distance along a surfel's plane in the energy e_M that a picked ray's curves show.")
-
-    weight: str = parameter(
-        "choice", "gaussian", choices=("gaussian",), group="Weight and area", label="Weight", stage="rays",
-        source="[T 2.7; A §6]", help="How the influence of a surfel falls with its distance q: exp(-q²/h²).")
-    h: Length = parameter(
-        "length", Length(0.8), low=0, open_low=True, high=1e6, step=0.05, unit="cells",
-        group="Weight and area", label="Feature size h", stage="rays", source="[T 2.7]",
-        help="Width of the weight: larger values smooth more and shrink round shapes by about h²/2R.")
-    normal: str = parameter(
-        "choice", "surfel", choices=("surfel",), group="Weight and area", label="Normal", stage="rays",
-        source="[T 2.13]", help="Where n(x) comes from: the weighted average of the surfels' normals.")
-    neighbourhood: str = parameter(
-        "choice", "cell_ball", choices=("cell_ball",), group="Weight and area", label="Neighbourhood",
-        stage="neighbours", source="[T §3.1.3]",
-        help="Which surfels count at x: those within the radius of the centre of the cell that holds x.")
-    radius: Length = parameter(
-        "length", Length(2.0), low=0.5, high=16, step=0.25, unit="cells", group="Weight and area",
-        label="Radius", stage="neighbours", source="[T §3.1.3]",
-        help="Radius of the neighbourhood, best 2.5 h or more: what it cuts off makes f jump at cell faces, and "
-             "holes open.")
-
-    search: str = parameter(
-        "choice", "iterate", choices=("iterate",), group="Search", label="Search", stage="rays",
-        source="[T §2.3.5; A §4]",
-        help="How a ray finds the surface: iterate intersects it with the plane at x again and again.")
-    tolerance: float = parameter(
-        "number", 0.125, low=0, high=10, step=0.005, unit="h", group="Search", label="Tolerance",
-        stage="rays", source="[T 2.14]",
-        help="A ray has arrived when its next step is shorter than this; it counts in radii where the radius is "
-             "below h.")
-    max_iterations: int = parameter(
-        "integer", 20, low=1, high=10_000, step=1, group="Search", label="Iterations a start", stage="rays",
-        source="[T §2.4.5, footnote 14]", help="After so many steps from one start the ray tries the next cell.")
-    trust: Length | str = parameter(
-        "length", "radius", choices=("radius",), low=0, open_low=True, high=1e6, step=0.25, unit="cells",
-        group="Search", label="Trust region", stage="rays", source="[A §4]",
-        help="How far from its start a search may go before it is given up; by default the radius.")
-    bail: str = parameter(
-        "choice", "cap", choices=("cap", "growth"), group="Search", label="Give up at", stage="rays",
-        source="[A §4]", help="cap: after the iterations allowed; growth: also as soon as |f| grows.")
-    traversal: str = parameter(
-        "choice", "exact", choices=("exact",), group="Search", label="Traversal", stage="rays",
-        source="[T §3.1.4]", help="How the cells along a ray are found: exact visits every cell it crosses.")
-
-    max_off_centre: Length = parameter(
-        "length", Length(0.3), low=0, open_low=True, high=1e6, step=0.01, unit="cells", group="Boundary",
-        label="Off-centre bound", stage="rays", source="[T 2.21]",
-        help="A hit farther than this from its barycentre a(x) is refused; it removes shreds at silhouettes.")
-
-    placement: str = parameter(
-        "choice", "box", choices=("box",), group="Lattice", label="Placement", stage="surfels",
-        source="[T 3.3, §3.1.2]", help="Where a cell's surfel lies along its normal: box maps the level linearly.")
-    gradient: str = parameter(
-        "choice", "central", choices=("central",), group="Lattice", label="Gradient", stage="surfels",
-        source="[T 3.1, 3.2]", help="How a cell's normal is found: central differences, one-sided at the border.")
-    neighbours: str = parameter(
-        "choice", "6", choices=("6", "26"), group="Lattice", label="Interface rule", stage="surfels",
-        source="[T §3.1]", help="Among how many neighbours an empty cell makes a full one an interface cell.")
-    border: str = parameter(
-        "choice", "open", choices=("open", "closed"), group="Lattice", label="Border", stage="surfels",
-        help="open: outside the lattice is unknown, a basin has no surface at its walls; closed: it is empty.")
-
-    raster: int | str = parameter(
-        "integer", "file", choices=("file",), low=2, high=2048, step=1, unit="cells", group="Model",
-        label="Raster", stage="levels", source="[T §3.3.3]",
-        help="Cells along each edge of a model scene; by default as its file says.")
-    filling: str = parameter(
-        "choice", "corners", choices=("corners",), group="Model", label="Filling", stage="levels",
-        source="[T Algorithms 3, 4]", help="How a model's fill levels are found: corners votes 8 corners a sub-cell.")
-    subdivision: int = parameter(
-        "integer", 20, low=1, high=100, step=1, group="Model", label="Sub-cells", stage="levels",
-        source="[T §3.3.3]", help="Sub-cells along each edge of an interface cell when a model is filled.")
-
-    shading: str = parameter(
-        "choice", "phong", choices=("phong", "diffuse"), group="Shading", label="Shading", stage="shade",
-        source="[T 2.4]", help="phong: ambient, diffuse and specular light; diffuse: the plain blue picture.")
-    light: tuple[float, float, float] | str = parameter(
-        "vector", "headlight", choices=("headlight",), group="Shading", label="Light", stage="shade",
-        unit="cells", source="[T 2.4]", help="Where the light stands; headlight: at the eye.")
-    ambient: float = parameter(
-        "number", 0.15, low=0, high=1, step=0.05, group="Shading", label="Ambient", stage="shade",
-        source="[T 2.4]", when=_phong, help="Light that reaches every point.")
-    diffuse: float = parameter(
-        "number", 0.75, low=0, high=1, step=0.05, group="Shading", label="Diffuse", stage="shade",
-        source="[T 2.4]", when=_phong, help="Light scattered evenly, by the angle of light and normal.")
-    specular: float = parameter(
-        "number", 0.3, low=0, high=1, step=0.05, group="Shading", label="Specular", stage="shade",
-        source="[T 2.4]", when=_phong, help="Light reflected towards the eye.")
-    shininess: float = parameter(
-        "number", 30.0, low=1, high=1000, step=1, group="Shading", label="Shininess", stage="shade",
-        source="[T 2.4]", when=_phong, help="How narrow the highlight is.")
+class Settings(ShadingSettings, CloudSettings, ModelSettings, LatticeSettings, BoundarySettings, SearchSettings,
+               WeightSettings, SurfaceSettings):
+    """What to compute. Lengths are in cells of a lattice or units of a cloud; see `PARAMETERS` for all of them."""
 
     def __post_init__(self) -> None:
         for name, about in PARAMETERS.items():
@@ -140,7 +41,15 @@ class Settings:
 PARAMETERS: dict[str, Parameter] = declared(Settings)
 
 #: Whole sets of values by name; "best" follows the project's measurements, "thesis" its source.
-PRESETS: dict[str, Mapping[str, Any]] = {"best": {}, "thesis": {}}
+PRESETS: dict[str, Mapping[str, Any]] = {
+    "best": {},
+    "thesis": {"method": "tangent", "search": "iterate", "weight": "gaussian", "h": 0.8, "normal": "surfel",
+               "neighbourhood": "cell_ball", "radius": 2.0, "placement": "box", "gradient": "central",
+               "traversal": "exact", "tolerance": 0.125, "max_off_centre": 0.3, "max_iterations": 20,
+               "filling": "corners"},
+    "adamson-alexa": {"method": "polynomial", "degree": 2, "search": "iterate", "weight": "gaussian", "h": "0.004d",
+                      "normal": "covariance_at_x", "ball_k": 6, "tolerance": 1e-3},
+}
 
 
 def preset(name: str) -> Settings:

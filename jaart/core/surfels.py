@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core.lattice import Mask, gradients, interface_cells
+from jaart.core import placements
+from jaart.core.elvira import elvira
+from jaart.core.filters import filtered
+from jaart.core.gradients import gradients
+from jaart.core.lattice import Mask, interface_cells
 from jaart.core.scene import Array, frozen
 from jaart.core.settings import Settings
+
+Vector = tuple[float, float, float]
+
+#: The spacing of a lattice whose cells are cubes.
+CUBIC: Vector = (1.0, 1.0, 1.0)
+#: A lattice that sticks out of its last cell by less than this ends there.
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,30 +47,60 @@ class Surfels:
         return len(self.cells)
 
 
-def make_surfels(levels: Array, settings: Settings) -> Surfels:
+def make_surfels(levels: Array, settings: Settings, spacing: Vector = CUBIC) -> Surfels:
     """The surfels of a lattice, in the order of its cells (x slowest).
 
-    levels: (nx, ny, nz) in [0, 1]; settings: neighbours and border name the interface cells, border
-    the gradient at the walls, placement the point. The normal is -gradient/|gradient| [T 3.1]; cells
-    whose gradient vanishes are left out and counted.
+    levels: (nx, ny, nz) in [0, 1], before the filter; settings: filter, then neighbours and border
+    name the interface cells, gradient, smoothing and border the normal -gradient/|gradient| [T 3.1],
+    placement the point. Cells whose gradient vanishes are left out and counted. spacing: edges of a
+    cell along x, y, z in units of the longest, which is the cell that the surfels' lengths count in.
     """
+    levels = filtered(levels, settings)
     cells = np.argwhere(interface_cells(levels, settings.neighbours, settings.border))
-    normal, defined = _normals(gradients(levels, settings.border, cells))
-    kept, normal = cells[defined], normal[defined]
-    along = PLACEMENTS[settings.placement](levels[tuple(kept.T)], normal)
-    index = kept.astype(np.int32)
+    across, defined = _normals(_gradients(levels, cells, settings))
+    cells, across = cells[defined], across[defined]
+    offset = placements.offsets(settings.placement, levels[tuple(cells.T)], across)
+    if tuple(spacing) == CUBIC:
+        index, normal = cells.astype(np.int32), across
+    else:
+        index, offset, normal = _stretched(cells, offset, across, np.array(spacing), settings.placement, levels.shape)
     index.flags.writeable = False
-    return Surfels(index, frozen(along[:, None] * normal), frozen(normal), without_normal=int((~defined).sum()))
+    return Surfels(index, frozen(offset), frozen(normal), without_normal=int((~defined).sum()))
 
 
-def box_placement(level: Array, normal: Array) -> Array:
-    """Signed distance v (N,) of the points from their cells' centres along the normals [T 3.3].
+def stretched_shape(shape: tuple[int, ...], spacing: Vector) -> tuple[int, int, int]:
+    """Cells of size 1×1×1 along each axis that cover a lattice whose cells have these edges.
 
-    v = 2(l - 1/2)t, t the distance from the centre to the cell's boundary along the normal.
+    shape: cells of the lattice; spacing: their edges in units of the longest.
     """
-    to_boundary = 0.5 / np.abs(normal).max(axis=1)
-    result: Array = 2 * (level - 0.5) * to_boundary
-    return result
+    x, y, z = (max(1, ceil(n * s - ROUNDING)) for n, s in zip(shape, spacing, strict=True))
+    return x, y, z
+
+
+def _stretched(cells: NDArray[np.intp], offset: Array, across: Array, spacing: Array, placement: str,
+               shape: tuple[int, ...]) -> tuple[NDArray[np.int32], Array, Array]:
+    """Cell, offset and normal (N, 3) of surfels that were found as if their cells were cubes.
+
+    A plane stays a plane when the lattice is stretched, and the volumes below it keep their ratio: its
+    normal is divided by the spacing, and its point moved to the new normal through the cell's centre,
+    or, for the polygon's centre, with the cell.
+    """
+    normal = across / spacing
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    offset = offset * spacing
+    if placement != placements.CENTROID:
+        offset = (offset * normal).sum(axis=1, keepdims=True) * normal
+    points = (cells + 0.5) * spacing + offset
+    last = np.array(stretched_shape(shape, (spacing[0], spacing[1], spacing[2]))) - 1
+    index = np.clip(np.floor(points), 0, last).astype(np.int32)
+    return index, points - index - 0.5, normal
+
+
+def _gradients(levels: Array, cells: NDArray[np.intp], settings: Settings) -> Array:
+    """Change of the level (N, 3) at the cells, as the settings say."""
+    if settings.gradient == "elvira":
+        return elvira(levels, cells, settings.border, settings.smoothing)
+    return gradients(levels, cells, settings.border, settings.gradient, settings.smoothing)
 
 
 def _normals(gradient: Array) -> tuple[Array, Mask]:
@@ -69,5 +111,3 @@ def _normals(gradient: Array) -> tuple[Array, Mask]:
     length = np.sqrt((scaled * scaled).sum(axis=1))
     return -scaled / np.where(defined, length, 1)[:, None] + 0.0, defined
 
-
-PLACEMENTS = {"box": box_placement}

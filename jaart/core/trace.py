@@ -8,15 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from jaart.core import prepare
+from jaart.core.cylinder import CylinderTracer
 from jaart.core.errors import RayError
-from jaart.core.kernels import energies, traversal
+from jaart.core.kernels import cylinder, energies, traversal
 from jaart.core.kernels import records as r
-from jaart.core.kernels.ray import trace_ray
+from jaart.core.kernels.records import Out
 from jaart.core.prepare import Prepared
 from jaart.core.records import STATUS_NAMES, Array, Curves, Trace
 from jaart.core.render import unit
 from jaart.core.scene import Scene, frozen
 from jaart.core.settings import Settings
+from jaart.core.tiles import columns_for
+from jaart.core.tracers import scratch
 from jaart.core.warm import warm_up
 
 #: Samples of the energies in each cell that a ray crosses, its borders included.
@@ -33,18 +36,17 @@ def trace(scene: Scene, settings: Settings, origin: ArrayLike, direction: ArrayL
     Raises RayError for an origin or a direction that is not finite, or a direction of zero length.
     """
     o, d = _ray(origin, direction)
-    warm_up()
+    warm_up(scene, settings, tracing=True)
     ready = prepare.prepared(scene, settings)
     end, rows = _logged(ready, o, d)
-    shape = ready.cells.empty.shape
-    bad = end[0] == r.BAD_RAY
+    shape = ready.tracer.cells.empty.shape
+    bad = end.status[0] == r.BAD_RAY
     cells, borders = _crossed(o, d, (0, 0, 0) if bad else (shape[0], shape[1], shape[2]))
-    near, weights = _neighbours(ready, rows)
+    near, weights = _neighbours(ready, rows, d)
     step = np.where(np.isfinite(rows[:, r.STEP]), rows[:, r.STEP], np.nan)
-    status, t, point, normal = end[0], end[1], end[2], end[3]
     return Trace(
-        origin=frozen(o), direction=frozen(d), t=t, point=frozen(point), normal=frozen(normal),
-        status=STATUS_NAMES[status], t_query=frozen(rows[:, r.T]),
+        origin=frozen(o), direction=frozen(d), t=float(end.t[0]), point=frozen(end.point[0]),
+        normal=frozen(end.normal[0]), status=STATUS_NAMES[end.status[0]], t_query=frozen(rows[:, r.T]),
         query=frozen(rows[:, r.X:r.Z + 1]), barycentre=frozen(rows[:, r.AX:r.AZ + 1]),
         step_normal=frozen(rows[:, r.NX:r.NZ + 1]), t_next=frozen(rows[:, r.T] + step),
         next_point=frozen(rows[:, r.X:r.Z + 1] + step[:, None] * d), energy=frozen(step),
@@ -52,8 +54,8 @@ def trace(scene: Scene, settings: Settings, origin: ArrayLike, direction: ArrayL
         start=_whole(rows[:, r.START]), step_cell=_step_cells(rows),
         outcome=tuple("continue" if e == r.CONTINUE else STATUS_NAMES[int(e)] for e in rows[:, r.END]),
         neighbours=near, weights=weights, cells=cells, borders=frozen(borders),
-        with_surfel=ready.cells.empty[tuple(cells.T)] == 0, surfels=ready.surfels,
-        curves=_curves(ready, settings, o, d, cells, borders), settings=settings,
+        with_surfel=ready.tracer.cells.empty[tuple(cells.T)] == 0, surfels=ready.surfels,
+        curves=_curves(ready, o, d, cells, borders), settings=settings,
         extent=prepare.extent(scene, settings), pixel=pixel)
 
 
@@ -67,15 +69,15 @@ def _ray(origin: ArrayLike, direction: ArrayLike) -> tuple[Array, Array]:
     return o, unit(d[None])[0]
 
 
-def _logged(ready: Prepared, o: Array, d: Array) -> tuple[r.RayEnd, Array]:
+def _logged(ready: Prepared, o: Array, d: Array) -> tuple[Out, Array]:
     """The end of a ray and the log of its steps, in a log that is enlarged until it holds them."""
-    room = 256
+    room, out = 256, columns_for(1)
     while True:
         rows = np.empty((room, r.LOG_WIDTH))
-        end = trace_ray(ready.cells, ready.search, tuple(o.tolist()), tuple(d.tolist()), rows)
-        if end[7] <= room:
-            return end, rows[:end[7]]
-        room = end[7]
+        written = ready.tracer.trace(o[None], d[None], np.zeros(1, np.int64), out, rows)
+        if written <= room:
+            return out, rows[:written]
+        room = written
 
 
 def _whole(numbers: NDArray[Any]) -> Ints:
@@ -95,24 +97,31 @@ def _crossed(o: Array, d: Array, shape: tuple[int, int, int]) -> tuple[Ints, Arr
     return _whole(cells[:n]), borders[:n + 1] if n else borders[:0]
 
 
-def _neighbours(ready: Prepared, rows: Array) -> tuple[tuple[NDArray[np.int64], ...], tuple[Array, ...]]:
-    """For each step the surfels of its neighbourhood and their normalised weights."""
+def _neighbours(ready: Prepared, rows: Array, d: Array) -> tuple[tuple[NDArray[np.int64], ...], tuple[Array, ...]]:
+    """For each step the surfels that count, and their normalised weights."""
+    sites, rule = ready.tracer.sites, ready.tracer.plan.rule
     ids, weights = [], []
     for row, cell in zip(rows, _step_cells(rows), strict=True):
-        number = np.ravel_multi_index(cell, ready.cells.empty.shape)
-        first, last = ready.cells.first[number], ready.cells.first[number + 1]
-        ids.append(ready.cells.ids[first:last].astype(np.int64))
-        x, w = row[r.X:r.Z + 1] - (cell + 0.5), np.empty(last - first)
-        energies.write_weights(ready.cells, tuple(cell.tolist()), tuple(x.tolist()), ready.search.h, w)
-        weights.append(frozen(w))
+        number = np.ravel_multi_index(cell, sites.shape)
+        first, last = sites.first[number], sites.first[number + 1]
+        x, w = row[r.X:r.Z + 1] - (cell + 0.5), np.empty(2 * (last - first))
+        place, at = tuple(cell.tolist()), tuple(x.tolist())
+        if isinstance(ready.tracer, CylinderTracer):
+            cylinder.write_shares(sites, place, at, tuple(d.tolist()), ready.tracer.radius, w)
+        else:
+            energies.write_weights(sites, place, at, rule, w)
+        w = w[:last - first]
+        ids.append(sites.ids[first:last][w > 0].astype(np.int64))
+        weights.append(frozen(w[w > 0]))
     return tuple(ids), tuple(weights)
 
 
-def _curves(ready: Prepared, settings: Settings, o: Array, d: Array, cells: Ints, borders: Array) -> Curves:
+def _curves(ready: Prepared, o: Array, d: Array, cells: Ints, borders: Array) -> Curves:
     """The energies at evenly spaced points of every cell crossed, with both sides of each border."""
     share = np.linspace(0.0, 1.0, SAMPLES_A_CELL)
     ts = (borders[:-1, None] + np.diff(borders)[:, None] * share).ravel() if len(cells) else np.empty(0)
-    values = np.empty((3, len(ts)))
-    energies.sample(ready.cells, ready.search.h, settings.mahalanobis_c, tuple(o.tolist()), tuple(d.tolist()), ts,
-                    np.repeat(cells.astype(np.int64), SAMPLES_A_CELL, axis=0), values)
+    values = np.empty((4, len(ts)))
+    sites = ready.tracer.sites
+    energies.sample(sites, ready.tracer.plan, tuple(o.tolist()), tuple(d.tolist()), ts,
+                    np.repeat(cells.astype(np.int64), SAMPLES_A_CELL, axis=0), values, *scratch(sites))
     return Curves(frozen(ts), *(frozen(v) for v in values))

@@ -1,4 +1,8 @@
-"""Load or compile the kernels once in a process, so that no measured time holds a compilation."""
+"""Load or compile kernels once in a process, so that no measured time holds a compilation.
+
+Only what a scene needs: the cells of a lattice or the balls of a cloud, its surface and its search; the
+energies along a ray when one is traced.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +11,20 @@ import threading
 
 import numpy as np
 
+from jaart.core import assemble, cylinder, meaning, mesh_tracer
+from jaart.core.cell_table import cell_table
+from jaart.core.chosen import Chosen, chosen
+from jaart.core.groups.surface import MESHES
 from jaart.core.kernels import energies, jit, pinhole, ray, traversal
-from jaart.core.kernels.records import LOG_WIDTH, Search
-from jaart.core.prepare import cell_table
+from jaart.core.kernels.records import LOG_WIDTH, Cells, Plan
+from jaart.core.scene import Scene
+from jaart.core.settings import Settings
 from jaart.core.surfels import Surfels
 from jaart.core.tiles import columns_for
+from jaart.core.tracers import scratch
 
-_LOCK = threading.Lock()
+_LOCK = threading.RLock()
+_O, _D = (1.5, 1.5, 9.0), (0.0, 0.0, -1.0)
 
 
 def needs_compile() -> bool:
@@ -21,23 +32,52 @@ def needs_compile() -> bool:
     return jit.first_time()
 
 
-def warm_up() -> None:
-    """Run every kernel once on two surfels; afterwards nothing compiles in this process."""
+def warm_up(scene: Scene, settings: Settings, tracing: bool = False) -> Chosen:
+    """Run every kernel that rays through a scene need once; afterwards nothing compiles for them.
+
+    tracing: also those that follow a single ray. Returns what the settings come to. Raises SettingsError for
+    settings that make no sense in the scene.
+    """
+    values = meaning.check(scene, settings)
     with _LOCK:
-        _run_all()
+        _camera()
+        _lattice()
+        if tracing:
+            _tracing()
+        assemble.plan_of(scene, settings, values)
+        if values.method in MESHES:
+            mesh_tracer.warm_up(values.method, *_small())
+        if values.method == "cylinder":
+            cylinder.warm_up()
+    return values
 
 
 @functools.cache
-def _run_all() -> None:
+def _camera() -> None:
+    view = pinhole.View(_O, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), _D, 1.0, 0, 1, 1)
+    pinhole.write_rays(view, np.zeros(1, np.int64), np.zeros(1, np.int64), np.array([_O]), np.array([_D]))
+
+
+@functools.cache
+def _small() -> tuple[Cells, Plan]:
+    """Two surfels in a lattice, and the plan of the default settings."""
+    scene = Scene("small", levels=np.zeros((3, 4, 3)))
+    values = chosen(scene, Settings())
     found = Surfels(np.array([[1, 1, 1], [1, 2, 1]], np.int32), np.zeros((2, 3)), np.eye(3)[[2, 2]])
-    cells = cell_table(found, (3, 4, 3), 2.0)
-    search = Search(h=0.8, arrived=0.1, cap=2, trust=2.0, growth=0, max_off_centre=0.3)
-    o, d = (1.5, 1.5, 9.0), (0.0, 0.0, -1.0)
-    origin, direction = np.array([o]), np.array([d])
-    view = pinhole.View(o, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), d, 1.0, 0, 1, 1)
-    pinhole.write_rays(view, np.zeros(1, np.int64), np.zeros(1, np.int64), origin, direction)
-    ray.trace_rays(cells, search, origin, direction, np.zeros(1, np.int64), columns_for(1))
-    ray.trace_ray(cells, search, o, d, np.empty((2, LOG_WIDTH)))
-    traversal.crossed(origin[0], direction[0], (3, 4, 3), np.empty((13, 3), np.int32), np.empty(14))
-    energies.sample(cells, 0.8, 0.25, o, d, np.array([7.5]), np.array([[1, 1, 1]]), np.empty((3, 1)))
-    energies.write_weights(cells, (1, 1, 1), (0.0, 0.0, 0.0), 0.8, np.empty(2))
+    return cell_table(found, (3, 4, 3), values, 1), assemble.plan_of(scene, Settings(), values)
+
+
+@functools.cache
+def _lattice() -> None:
+    cells, plan = _small()
+    ray.trace_rays(cells, plan, np.array([_O]), np.array([_D]), np.zeros(1, np.int64), columns_for(1),
+                   np.empty((2, LOG_WIDTH)), *scratch(cells.sites))
+
+
+@functools.cache
+def _tracing() -> None:
+    cells, plan = _small()
+    traversal.crossed(np.array(_O), np.array(_D), (3, 4, 3), np.empty((13, 3), np.int32), np.empty(14))
+    energies.sample(cells.sites, plan, _O, _D, np.array([7.5]), np.array([[1, 1, 1]]), np.empty((4, 1)),
+                    *scratch(cells.sites))
+    energies.write_weights(cells.sites, (1, 1, 1), (0.0, 0.0, 0.0), plan.rule, np.empty(4))

@@ -25,7 +25,7 @@ def problem(source: str | Path, frame: int | None = None) -> str:
 def test_built_in_scenes_open_by_name(name: str) -> None:
     scene = load(name)
     assert scene.source == name
-    assert (scene.levels is None) == (name == "standard")
+    assert scene.kind == {"splash": "lattice", "standard": "model", "bumpy": "cloud"}[name]
 
 
 def test_frames_of_the_built_in_series() -> None:
@@ -33,10 +33,12 @@ def test_frames_of_the_built_in_series() -> None:
     assert load("splash").frame == 2
     assert "frame 3: holds 3 frames" in problem("splash", 3)
     assert "frame 1: holds 1 frame;" in problem("standard", 1)
+    assert "frame 1: holds 1 frame;" in problem("bumpy", 1)
 
 
 def test_a_name_that_is_neither_file_nor_built_in(tmp_path: Path) -> None:
-    assert problem("splsh") == "splsh: no such file, and no built-in scene of that name; built-in are splash, standard"
+    assert problem("splsh") == ("splsh: no such file, and no built-in scene of that name; built-in are splash, "
+                                "standard, bumpy")
     assert "no such file" in problem(tmp_path / "none.npz")
 
 

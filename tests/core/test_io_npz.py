@@ -126,10 +126,6 @@ def test_arrays_of_the_wrong_kind_are_named(tmp_path: Path, arrays: dict[str, ob
     assert f"array {list(arrays)[-1]!r}" in text and "expected" in text
 
 
-def test_clouds_wait_for_a_later_version(tmp_path: Path) -> None:
-    assert "point cloud, which this version cannot read yet" in problem(saved(tmp_path, points=np.zeros((9, 3))))
-
-
 def test_nothing_to_read(tmp_path: Path) -> None:
     assert "holds a, b; expected an array levels" in problem(saved(tmp_path, a=1, b=2))
     assert "holds nothing" in problem(saved(tmp_path))

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from jaart.core.errors import FileError
 from jaart.core.io import load
 from jaart.core.scene import Model, Scene
-from jaart.core.shapes import Box, Sphere
+from jaart.core.shapes import Box, Cylinder, Ellipsoid, Sphere, Torus
 
 VALID = """<?xml version="1.0"?>
 <!-- a comment -->
@@ -44,6 +44,35 @@ def test_a_valid_file(tmp_path: Path, coding: str) -> None:
     assert (scene.kind, scene.levels, scene.notes) == ("model", None, ())
 
 
+BEYOND = """<SceneGraph raster="8">
+<Torus major="0.3" minor="0.1" axis="x"><location x="0.5" y="0.5" z="0.5"/></Torus>
+<Cylinder radius="0.1" height="0.4" axis="0 3 4"><location x="0.5" y="0.5" z="0.5"/></Cylinder>
+<Ellipsoid width="0.2" height="0.4" depth="0.6"><location x="0.5" y="0.5" z="0.5"/></Ellipsoid>
+</SceneGraph>
+"""
+
+
+def test_the_solids_beyond_the_sources(tmp_path: Path) -> None:
+    centre = (0.5, 0.5, 0.5)
+    assert load(written(tmp_path, BEYOND)).model == Model((
+        Torus(centre, (1, 0, 0), 0.3, 0.1), Cylinder(centre, (0, 0.6, 0.8), 0.1, 0.4),
+        Ellipsoid(centre, (0.1, 0.2, 0.3))), 8)
+
+
+@pytest.mark.parametrize("old, new, expected", [
+    ('axis="x"', "", "line 2, <Torus>: has no attribute 'axis'"),
+    ('axis="x"', 'axis="w"', "line 2, <Torus>: axis = 'w'; expected x, y, z or a direction of three numbers"),
+    ('"0 3 4"', '"0 3"', "line 3, <Cylinder>: axis = '0 3'; expected"),
+    ('"0 3 4"', '"0 nan 4"', "line 3, <Cylinder>: axis = '0 nan 4'; expected"),
+    ('"0 3 4"', '"0 0 0"', "line 3, <Cylinder>: cylinder axis = (0.0, 0.0, 0.0): expected a direction"),
+    ('minor="0.1"', 'minor="0.3"', "line 2, <Torus>: torus minor radius = 0.3: expected it below the major, 0.3"),
+    ('minor="0.1"', 'minor="0"', "line 2, <Torus>: minor = '0'; expected a number above 0"),
+    ('depth="0.6"', 'depth="-1"', "line 4, <Ellipsoid>: depth = '-1'; expected a number above 0"),
+])
+def test_their_errors(tmp_path: Path, old: str, new: str, expected: str) -> None:
+    assert expected in problem(written(tmp_path, BEYOND.replace(old, new)))
+
+
 def test_the_standard_scene_is_built_in(tmp_path: Path) -> None:
     assert load("standard").model == load(written(tmp_path, VALID)).model
     assert load("standard").source == "standard"
@@ -74,7 +103,7 @@ def test_sizes_must_be_positive(tmp_path: Path, name: str, was: str, number: str
     ('z="0.4"', "", "line 6, <location>: has no attribute 'z'"),
     ('<location x="0.3" y="0.5" z="0.4"/>', "", "line 7, <Box>: has no <location"),
     ('<location x="0.3" y="0.5" z="0.4"/>', '<location x="0" y="0" z="0"/>' * 2, "<location>: stands here twice"),
-    ("Sphere", "Torus", "line 4, <Torus>: is unknown here; expected Sphere or Box"),
+    ("Sphere", "Cone", "line 4, <Cone>: is unknown here; expected Sphere or Box or Torus or Cylinder or Ellipsoid"),
     ("SceneGraph", "Scene", "line 3, <Scene>: is unknown here; expected SceneGraph"),
     ("</Box>", "<Box/></Box>", "line 7, <Box>: is unknown here; expected location"),
     ("</Box>", "text</Box>", "<Box>: has text 'text' inside"),
@@ -109,7 +138,8 @@ def test_what_is_no_xml(tmp_path: Path, content: bytes) -> None:
 
 
 def test_an_empty_graph(tmp_path: Path) -> None:
-    assert "line 1, <SceneGraph>: holds no Sphere and no Box" in problem(written(tmp_path, '<SceneGraph raster="4"/>'))
+    text = problem(written(tmp_path, '<SceneGraph raster="4"/>'))
+    assert "line 1, <SceneGraph>: holds no Sphere and no Box and no Torus" in text
 
 
 def test_what_the_cube_cuts_off_is_said(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from jaart.core import prepare
 from jaart.core.records import STATUS_NAMES, Hits, Trace
 from jaart.core.render import render
 from jaart.core.scene import Model, Scene
-from jaart.core.settings import Settings
+from jaart.core.settings import Settings, preset
 from jaart.core.shapes import Box, Sphere
 from jaart.core.trace import trace
 from tests import naive
@@ -24,8 +24,8 @@ Array = NDArray[np.float64]
 #: A ray whose decisions all keep this distance from their thresholds must end the same.
 UNDECIDED = 1e-9
 
-STANDARD = Settings(subdivision=8)
-SMALL = Settings(border="closed")
+STANDARD = preset("thesis").replace(subdivision=8)
+SMALL = preset("thesis").replace(border="closed")
 SETTINGS = {
     "standard": STANDARD,
     "standard, tight": STANDARD.replace(tolerance=1e-8, max_off_centre=1.5, trust=3, radius=3),

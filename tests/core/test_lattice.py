@@ -1,4 +1,4 @@
-"""Interface cells and gradients, against their definitions cell by cell."""
+"""Interface cells, against their definition cell by cell."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from jaart.core.lattice import gradients, interface_cells
+from jaart.core.lattice import interface_cells
 
 RNG = np.random.default_rng(4)
 SHAPES = [(4, 5, 6), (1, 5, 4), (5, 1, 1), (1, 1, 1), (2, 2, 2)]
@@ -39,32 +39,3 @@ def test_the_border_of_a_full_lattice() -> None:
     levels = np.ones((4, 4, 4))
     assert not interface_cells(levels, border="open").any()
     assert interface_cells(levels, border="closed").sum() == 4**3 - 2**3
-
-
-@pytest.mark.parametrize("shape", SHAPES)
-def test_the_gradient_of_a_linear_field_is_exact(shape: tuple[int, int, int]) -> None:
-    slope = np.array([0.25, -0.5, 2.0])
-    x, y, z = np.indices(shape)
-    expected = np.where(np.array(shape) > 1, slope, 0)
-    assert np.array_equal(gradients(x * slope[0] + y * slope[1] + z * slope[2]), np.broadcast_to(expected, (*shape, 3)))
-
-
-def test_closed_borders_see_nothing_outside() -> None:
-    levels = RNG.uniform(size=(4, 3, 5))
-    inner = gradients(np.pad(levels, 1))[1:-1, 1:-1, 1:-1]
-    assert np.array_equal(gradients(levels, "closed"), inner)
-    assert not gradients(np.ones((1, 1, 1)), "closed").any()
-
-
-def test_open_borders_look_one_way() -> None:
-    levels = np.zeros((3, 1, 1))
-    levels[:, 0, 0] = 0.1, 0.4, 0.9
-    assert gradients(levels)[:, 0, 0, 0] == pytest.approx([0.3, 0.4, 0.5], abs=1e-15)
-    assert gradients(levels, "closed")[:, 0, 0, 0] == pytest.approx([0.2, 0.4, -0.2], abs=1e-15)
-
-
-@pytest.mark.parametrize("border", ["open", "closed"])
-def test_gradients_of_some_cells(border: str) -> None:
-    levels = RNG.uniform(size=(4, 3, 5))
-    cells = np.argwhere(RNG.uniform(size=levels.shape) < 0.3)
-    assert np.array_equal(gradients(levels, border, cells), gradients(levels, border)[tuple(cells.T)])

@@ -1,4 +1,4 @@
-"""Filling models: against the literal algorithms, analytic volumes and the standard scene's count."""
+"""Filling models by corner votes: against the literal algorithms, analytic volumes, the standard scene's count."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from jaart.core.io import load
 from jaart.core.model import fill
 from jaart.core.scene import Model
 from jaart.core.settings import Settings
-from jaart.core.shapes import Box, Solid, Sphere
+from jaart.core.shapes import Box, Cylinder, Ellipsoid, Solid, Sphere, Torus
 from jaart.core.surfels import make_surfels
 
 STANDARD = Model((Sphere((0.7, 0.7, 0.7), 0.25), Box((0.3, 0.5, 0.4), (0.2, 0.4, 0.3))), 16)
@@ -22,6 +22,10 @@ OVERLAP = Model((Box((0.5, 0.5, 0.5), (0.51, 0.33, 0.42)), Box((0.6, 0.6, 0.5), 
                  Sphere((0.4, 0.4, 0.4), 0.21)), 6)
 #: All corners of a cell are in one of two boxes, a gap runs through the middle of it.
 GAP = Model((Box((0.3, 0.5, 0.5), (0.34, 0.9, 0.9)), Box((0.7, 0.5, 0.5), (0.36, 0.9, 0.9))), 5)
+#: The hole of the small torus lies within a cell whose corners the torus holds.
+BEYOND = Model((Torus((0.5, 0.5, 0.5), (1, 2, 3), 0.15, 0.1), Cylinder((0.3, 0.7, 0.4), "y", 0.2, 0.4),
+                Ellipsoid((0.7, 0.4, 0.3), (0.25, 0.1, 0.15))), 5)
+RING = Model((Torus((0.5, 0.5, 0.5), "z", 0.3, 0.28),), 5)
 
 
 def vote(solids: list[Solid], point: np.ndarray, step: float) -> float:
@@ -41,7 +45,7 @@ def literal(model: Model, raster: int, subdivision: int) -> np.ndarray:
     return levels
 
 
-@pytest.mark.parametrize("model", [STANDARD, OVERLAP, GAP])
+@pytest.mark.parametrize("model", [STANDARD, OVERLAP, GAP, BEYOND, RING])
 @pytest.mark.parametrize("subdivision", [1, 3])
 def test_the_literal_algorithms(model: Model, subdivision: int) -> None:
     levels = fill(model, 5, "corners", subdivision)
@@ -85,7 +89,7 @@ def test_volumes_converge_to_the_analytic_ones() -> None:
 @pytest.mark.parametrize("piece", [1, 1 << 13, 1 << 17])
 def test_cells_beside_an_aligned_face_do_not_depend_on_the_pieces(piece: int, monkeypatch: pytest.MonkeyPatch) -> None:
     box = Model((Box((0.5, 0.5, 0.5), (0.5, 0.5, 0.5)),), 8)
-    monkeypatch.setattr("jaart.core.model.PIECE", piece)
+    monkeypatch.setattr("jaart.core.fill_corners.PIECE", piece)
     assert np.allclose(fill(box, 8, "corners", 5), literal(box, 8, 5), rtol=0, atol=1e-15)
 
 
@@ -105,5 +109,5 @@ def test_a_lattice_beyond_memory_is_refused(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_unknown_fillings() -> None:
-    with pytest.raises(SettingsError, match="filling = 'best': expected corners"):
+    with pytest.raises(SettingsError, match="filling = 'best': expected accurate or corners"):
         fill(STANDARD, 4, "best", 2)

@@ -16,7 +16,7 @@ def test_every_parameter_is_fully_declared() -> None:
         assert p.name == name and p.label and p.group and p.help.endswith("."), name
         assert p.stage in STAGES, name
         assert p.check(p.default) == p.default, name
-        assert p.kind == "choice" or not p.choices or p.kind in ("length", "integer", "vector"), name
+        assert not p.choices or p.kind in ("choice", "length", "number", "integer", "vector", "vectors"), name
 
 
 def test_thesis_preset_has_the_values_of_the_thesis() -> None:
@@ -48,7 +48,8 @@ def test_parse_reads_texts_on_top_of_a_base() -> None:
     ("radus=2", "did you mean radius"),
     ("zzz=2", "no setting is called 'zzz'"), ("weight=cubic", "expected gaussian"), ("raster=1", ">= 2"),
     ("max_iterations=0", ">= 1"), ("max_iterations=1_0", "whole number"), ("tolerance=1_0", "finite number"),
-    ("light=1_0,0,0", "x,y,z"), ("tolerance=-1", ">= 0"), ("light=1,2", "x,y,z or headlight"),
+    ("light=1_0,0,0", "x,y,z"), ("tolerance=-1", ">= 0"),
+    ("light=1,2", "x,y,z or several of them apart by ; or headlight"),
 ])
 def test_parse_names_what_is_wrong(text: str, says: str) -> None:
     with pytest.raises(SettingsError) as error:
@@ -58,7 +59,8 @@ def test_parse_names_what_is_wrong(text: str, says: str) -> None:
 
 
 def test_settings_are_frozen_equal_and_hashable() -> None:
-    assert Settings(h="0.8") == Settings() and hash(Settings(h="0.8")) == hash(Settings())  # type: ignore[arg-type]
+    typed, given = Settings(h="0.8"), Settings(h=Length(0.8))
+    assert typed == given != Settings() and hash(typed) == hash(given)
     with pytest.raises(dataclasses.FrozenInstanceError):
         Settings().h = Length(1.0)  # type: ignore[misc]
     with pytest.raises(SettingsError):
@@ -71,7 +73,7 @@ def test_settings_are_frozen_equal_and_hashable() -> None:
 def test_a_change_enters_its_stage_and_those_after_it(name: str) -> None:
     about = PARAMETERS[name]
     other = {"choice": about.choices[-1:], "length": ("1.125",), "number": ("2",) if about.low == 1 else ("0.5",),
-             "integer": ("7",), "vector": ("4,5,6",), "flag": ("true",)}[about.kind][0]
+             "integer": ("3",), "vector": ("4,5,6",), "vectors": ("4,5,6",), "flag": ("true",)}[about.kind][0]
     changed = Settings().replace(**{name: other})
     if changed == Settings():
         assert len(about.choices) == 1

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from jaart.core import colours, shade
+from jaart.core import colours, phong, shade
 from jaart.core.camera import Camera
 from jaart.core.colours import BACKGROUND, COLOURS, NO_VALUE, TABLE, coloured
 from jaart.core.errors import SettingsError
@@ -32,8 +32,10 @@ def make_hits(normals: list[tuple[float, float, float]], size: tuple[int, int] |
     t = np.where(hit, 10.0, np.nan)
     origin, direction = np.tile([0.0, 0.0, 10.0], (n, 1)), np.tile([0.0, 0.0, -1.0], (n, 1))
     ones = hit.astype(np.int32)
-    hits = Hits(origin, direction, t, origin + t[:, None] * direction, normal, t * 0, t * 0.01, ones, ones, ones, ones,
-                np.where(hit, STATUS["converged"], STATUS["background"]).astype(np.uint8), Settings(), None, size)
+    status = np.where(hit, STATUS["converged"], STATUS["background"]).astype(np.uint8)
+    hits = Hits(origin=origin, direction=direction, t=t, point=origin + t[:, None] * direction, normal=normal,
+                energy=t * 0, off_centre=t * 0.01, iterations=ones, evaluations=ones, neighbours=ones, cells=ones,
+                lowered=0 * ones, status=status, settings=Settings(), size=size)
     return dataclasses.replace(hits, **columns)  # type: ignore[arg-type]
 
 
@@ -66,8 +68,8 @@ def test_phong_headlight_adds_up_its_three_parts() -> None:
 
     cosine, mirrored = math.cos(math.radians(angle)), math.cos(math.radians(2 * angle))
     assert light() == pytest.approx(0, abs=1e-3)
-    assert light(ambient=0.5) == pytest.approx(0.5 * shade._WATER, abs=5e-3)
-    assert light(diffuse=0.5) == pytest.approx(0.5 * cosine * shade._WATER, abs=5e-3)
+    assert light(ambient=0.5) == pytest.approx(0.5 * phong.WATER, abs=5e-3)
+    assert light(diffuse=0.5) == pytest.approx(0.5 * cosine * phong.WATER, abs=5e-3)
     assert light(specular=0.5) == pytest.approx(np.full(3, 0.5 * mirrored ** 5), abs=5e-3)
 
 
@@ -81,7 +83,7 @@ def test_normals_are_turned_to_the_viewer() -> None:
 def test_a_light_that_stands_aside() -> None:
     settings = Settings(light=(10, 0, 0), ambient=0, diffuse=1, specular=0)
     picture = shade.shade(make_hits([tilted(30), tilted(-30), (0, 0, 1)]), settings=settings)[0]
-    assert linear(picture[0]) == pytest.approx(0.5 * shade._WATER, abs=5e-3)
+    assert linear(picture[0]) == pytest.approx(0.5 * phong.WATER, abs=5e-3)
     assert picture[1:].tolist() == [[0, 0, 0]] * 2
     mirror = settings.replace(light=(7, 0, 7), diffuse=0, specular=1, shininess=1000)
     bright = shade.shade(make_hits([tilted(22.5), tilted(30)]), settings=mirror)[0]
@@ -167,7 +169,7 @@ def test_scales_are_round_and_robust() -> None:
     assert limits(np.array([5.0, 5.0]), zero=False) == (5, 6)
     assert limits(np.zeros(4)) == limits(np.full(4, 1e-15)) == (0, 1)
     assert scale("shaded", make_hits([(0, 0, 1)])) == (0, 1)
-    assert scale("status", make_hits([(0, 0, 1)])) == (0, 10)
+    assert scale("status", make_hits([(0, 0, 1)])) == (0, len(STATUS_NAMES) - 1)
 
 
 @settings(max_examples=40, deadline=None)

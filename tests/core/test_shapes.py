@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from jaart.core.errors import SettingsError
-from jaart.core.shapes import Box, Solid, Sphere, first_hit
+from jaart.core.shapes import Box, Cylinder, Ellipsoid, Solid, Sphere, Torus, first_hit
 
 SPHERE = Sphere((0.7, 0.7, 0.7), 0.25)
 BOX = Box((0.3, 0.5, 0.4), (0.2, 0.4, 0.3))
@@ -105,7 +105,8 @@ def test_directions_need_no_unit_length() -> None:
 
 @pytest.mark.parametrize("bad", [[math.nan, 0, 0], [0, 0, 0], [math.inf, 0, 0], [0, -math.inf, 1]])
 def test_rays_that_are_none_meet_nothing(bad: list[float]) -> None:
-    for solid in (SPHERE, BOX):
+    middle = (0.7, 0.7, 0.7)
+    for solid in (SPHERE, BOX, Ellipsoid(middle, (1, 2, 3)), Cylinder(middle, "y", 1, 1), Torus(middle, "x", 2, 1)):
         assert math.isnan(one(solid, [0.7, 0.7, 0.7], bad)[0])
         assert np.isnan(one(solid, [0.7, 0.7, 0.7], bad)[1]).all()
     for origin in (bad[:1] * 3, [bad[0], 0.5, 0.4]):
@@ -138,9 +139,13 @@ def test_faces_that_boxes_share_are_no_surface() -> None:
 
 unit = st.floats(-1, 1, allow_subnormal=False)
 place = st.tuples(unit, unit, unit)
+axes = st.one_of(st.sampled_from("xyz"), place.filter(lambda axis: math.hypot(*axis) > 0.1))
 solids = st.lists(st.one_of(
     st.builds(Sphere, place, st.floats(0.05, 0.8)),
-    st.builds(Box, place, st.tuples(*[st.floats(0.05, 1.2)] * 3))), min_size=1, max_size=4)
+    st.builds(Box, place, st.tuples(*[st.floats(0.05, 1.2)] * 3)),
+    st.builds(Ellipsoid, place, st.tuples(*[st.floats(0.05, 0.8)] * 3)),
+    st.builds(Cylinder, place, axes, st.floats(0.05, 0.8), st.floats(0.05, 1.2)),
+    st.builds(Torus, place, axes, st.floats(0.2, 0.8), st.floats(0.05, 0.19))), min_size=1, max_size=4)
 
 
 @given(solids, st.tuples(*[st.floats(-2, 2, allow_subnormal=False)] * 3), place)

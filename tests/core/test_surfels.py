@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from jaart.core import plic
+from jaart.core.filters import filtered
 from jaart.core.io import load
 from jaart.core.lattice import interface_cells
+from jaart.core.placements import ALONG_NORMAL, PLACEMENTS, offsets
 from jaart.core.scene import frozen
 from jaart.core.settings import Settings
-from jaart.core.surfels import box_placement, make_surfels
+from jaart.core.surfels import make_surfels, stretched_shape
 
 RNG = np.random.default_rng(5)
 
@@ -26,17 +31,6 @@ def test_a_flat_surface_is_met_exactly(level: float, axis: int) -> None:
     expected = np.zeros(3)
     expected[axis] = 1
     assert np.array_equal(surfels.normal, np.tile(expected, (len(surfels), 1)))
-
-
-def test_placement_reaches_the_cells_faces() -> None:
-    normal = RNG.normal(size=(200, 3))
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    for level, at in ((0.0, -0.5), (0.5, 0.0), (1.0, 0.5)):
-        offset = box_placement(np.full(200, level), normal)[:, None] * normal
-        largest = np.abs(normal).argmax(axis=1)
-        reached = offset[np.arange(200), largest] * np.sign(normal[np.arange(200), largest])
-        assert np.allclose(reached, at, rtol=0, atol=1e-15)
-        assert (np.abs(offset) <= 0.5 + 1e-15).all()
 
 
 def test_order_and_form_of_the_record() -> None:
@@ -98,3 +92,92 @@ def test_the_real_splash() -> None:
     assert 5_000 < len(surfels) < 15_000
     assert np.isfinite(surfels.points).all() and np.isfinite(surfels.normal).all()
     assert (np.abs(surfels.offset) <= 0.5 + 1e-15).all()
+
+
+GRADIENTS = ("central", "youngs", "smooth")
+PAIRS = [(p, g) for p in PLACEMENTS for g in GRADIENTS]
+
+
+def slab(normal: np.ndarray, at: float, shape: tuple[int, int, int], spacing: tuple[float, ...]) -> np.ndarray:
+    """Exact levels below the plane <normal, x> = at, in units of the longest edge of a cell."""
+    stretched = normal * np.array(spacing)
+    size = np.linalg.norm(stretched)
+    centres = (np.moveaxis(np.indices(shape), 0, -1) + 0.5).reshape(-1, 3)
+    levels = plic.volume((at - centres @ stretched) / size, np.broadcast_to(stretched / size, centres.shape))
+    return levels.reshape(shape)
+
+
+@pytest.mark.parametrize(("placement", "gradient"), PAIRS)
+@pytest.mark.parametrize("filter_", ["none", "thesis", "median", "gauss"])
+def test_every_setting_gives_surfels(placement: str, gradient: str, filter_: str) -> None:
+    settings = Settings(placement=placement, gradient=gradient, filter=filter_)
+    scene = load("splash")
+    assert scene.levels is not None
+    levels = scene.levels[::2, ::2, ::2]
+    surfels = make_surfels(levels, settings)
+    kept = filtered(levels, settings)
+    assert len(surfels) + surfels.without_normal == interface_cells(kept).sum() and len(surfels) > 500
+    assert np.isfinite(surfels.points).all()
+    assert np.allclose(np.linalg.norm(surfels.normal, axis=1), 1, rtol=0, atol=1e-15)
+    expected = offsets(placement, kept[tuple(surfels.cells.T)], surfels.normal)
+    assert np.array_equal(surfels.offset, expected)
+
+
+@pytest.mark.parametrize("gradient", GRADIENTS)
+@pytest.mark.parametrize("placement", PLACEMENTS)
+@pytest.mark.parametrize("axis", range(3))
+def test_flat_surfaces_of_long_cells_are_met_exactly(gradient: str, placement: str, axis: int) -> None:
+    spacing = (1.0, 0.5, 0.25)
+    levels = np.moveaxis(np.broadcast_to([1, 1, 1, 1, 0.5, 0, 0, 0], (6, 7, 8)), 2, axis)
+    surfels = make_surfels(levels, Settings(gradient=gradient, placement=placement), spacing)
+    assert np.array_equal(surfels.normal, np.tile(np.eye(3)[axis], (len(surfels), 1)))
+    assert np.allclose(surfels.points[:, axis], 4.5 * spacing[axis], rtol=0, atol=1e-15)
+    assert (surfels.cells >= 0).all() and (surfels.cells < stretched_shape(levels.shape, spacing)).all()
+
+
+def test_elvira_keeps_the_edges_of_a_box() -> None:
+    levels = np.zeros((9, 9, 9))
+    levels[2:7, 2:7, 2:6], levels[2:7, 2:7, 6] = 1, 0.4
+    settings = SimpleNamespace(filter="none", neighbours="6", border="open", gradient="elvira", smoothing=0.8,
+                               placement="exact")
+    surfels = make_surfels(levels, settings)
+    top = (surfels.cells[:, 2] == 6) & ((surfels.cells[:, :2] > 2) & (surfels.cells[:, :2] < 6)).all(axis=1)
+    assert top.sum() == 9 and np.allclose(surfels.normal[top], [0, 0, 1], rtol=0, atol=1e-12)
+    assert np.allclose(surfels.points[top, 2], 6.4, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("placement", ["box", "exact", "exact_centroid"])
+@pytest.mark.parametrize(("spacing", "shape"), [((1, 1, 1), (9, 10, 11)), ((0.25, 1.0, 0.5), (36, 10, 22))])
+def test_a_plane_through_long_cells(placement: str, spacing: tuple[float, float, float],
+                                    shape: tuple[int, int, int]) -> None:
+    """Normals and points lie in one frame: the one in which the plane was asked for, not the lattice's."""
+    normal = np.array([0.48, 0.6, 0.64])
+    levels = slab(normal, 8.6, shape, spacing)
+    surfels = make_surfels(levels, Settings(placement=placement, gradient="youngs"), spacing)
+    inside = (np.abs(surfels.points - (4.5, 5, 5.5)) < 3.2).all(axis=1)
+    angle = np.degrees(np.arccos(np.minimum(surfels.normal[inside] @ normal, 1)))
+    assert inside.sum() > 30 and angle.mean() < 3 and angle.max() < 8
+    assert np.abs(surfels.points[inside] @ normal - 8.6).max() < {"box": 0.25}.get(placement, 0.04)
+    assert stretched_shape(shape, spacing) == (9, 10, 11)
+    assert (surfels.cells >= 0).all() and (surfels.cells < (9, 10, 11)).all()
+    if spacing != (1, 1, 1):
+        assert np.array_equal(np.floor(surfels.points[inside]), surfels.cells[inside])
+
+
+def test_points_of_the_exact_plane_in_long_cells() -> None:
+    """Where the normal is exact the plane is met to the last bit, and the ball's cap as well as it can."""
+    spacing, shape = (0.25, 1.0, 0.5), (12, 1, 1)
+    levels = np.zeros(shape)
+    levels[:, 0, 0] = [1] * 5 + [0.3] + [0] * 6
+    for placement in (*ALONG_NORMAL, "exact_centroid"):
+        surfels = make_surfels(levels, Settings(placement=placement), spacing)
+        along = {"sphere", "sphere_half"} & {placement}
+        assert abs(surfels.points[0, 0] - 5.3 * 0.25) < (0.02 if along else 1e-15)
+
+
+def test_cubes_of_any_spacing_are_the_same_cubes() -> None:
+    levels = RNG.choice([0, 0.3, 0.7, 1], size=(5, 6, 7))
+    one, two = make_surfels(levels, Settings()), make_surfels(levels, Settings(), (1, 1, 1))
+    assert np.array_equal(one.points, two.points) and np.array_equal(one.normal, two.normal)
+    assert stretched_shape((5, 6, 7), (1, 1, 1)) == (5, 6, 7)
+    assert stretched_shape((3, 10, 1), (1.0, 0.1, 0.001)) == (3, 1, 1)

@@ -8,19 +8,20 @@ from decimal import Decimal, localcontext
 import numpy as np
 import pytest
 
-from jaart.core.kernels.jit import kernel
-from jaart.core.kernels.near import surfels_near
-from jaart.core.kernels.records import Cells
-from jaart.core.kernels.tangent import tangent
+from jaart.core.kernels import records as r
+from jaart.core.kernels.records import Near, Rule
+from jaart.core.kernels.tangent import tangent_surfel
 from jaart.core.kernels.weights import exp_minus
-from jaart.core.prepare import cell_table
 from jaart.core.surfels import Surfels
 
 
-@kernel()
-def f_and_normal(cells: Cells, x: tuple[float, float, float], h: float) -> tuple[float, tuple[float, float, float]]:
-    _, f, n, _, _, _ = tangent(surfels_near(cells, (1, 1, 1)), x, h)
-    return f, n
+def f_and_normal(found: Surfels, x: tuple[float, float, float], h: float) -> tuple[float, tuple[float, float, float]]:
+    """f and n at x, relative to the centre of cell (1, 1, 1), by all surfels."""
+    columns = np.concatenate([found.points - 1.5, found.normal], axis=1).T.ravel()
+    near = Near(np.ascontiguousarray(columns), np.uint64(0), np.uint64(len(found)))
+    rule = Rule(r.GAUSSIAN, r.SURFEL, h, math.inf, 0, 0, 0, 0.25)
+    value = tangent_surfel(near, x, rule, r.VALUE_ONLY, np.empty(24 * len(found)), np.empty(r.FIT_SIZE))
+    return value.f, value.n
 
 
 def test_exp_is_right_within_two_units_in_the_last_place() -> None:
@@ -46,9 +47,8 @@ def test_exp_at_its_ends() -> None:
 def test_f_is_the_plane_of_the_nearest_surfel_at_any_distance(h: float) -> None:
     tilted = np.array([0.6, 0.0, 0.8])
     found = Surfels(np.array([[1, 1, 1], [1, 1, 2]], np.int32), np.zeros((2, 3)), np.array([[0, 0, 1.0], tilted]))
-    cells = cell_table(found, (3, 3, 3), 3.0)
     x = (0.3, 0.2, -0.45)
-    f, n = f_and_normal(cells, x, h)
+    f, n = f_and_normal(found, x, h)
     if h < 0.2:  # the second surfel's share is below exp(-1.9/h²)
         assert n == pytest.approx((0, 0, 1), abs=1e-15) and f == pytest.approx(0.45, abs=1e-15)
     else:

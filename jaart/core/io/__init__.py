@@ -10,7 +10,9 @@ from typing import NamedTuple
 
 from jaart.core.errors import FileError
 from jaart.core.io import npz, scene_graph, vti
+from jaart.core.io.values import check_frame
 from jaart.core.resources import resource
+from jaart.core.samples import bumpy_sphere
 from jaart.core.scene import Scene
 
 Reader = Callable[[Path, int | None], Scene]
@@ -20,14 +22,16 @@ READERS: Mapping[str, Reader] = {".npz": npz.read, ".vti": vti.read, ".xml": sce
 
 
 class BuiltIn(NamedTuple):
-    """A scene that comes with Jaart: its file in resources/ and the frame shown when nobody says."""
+    """A scene that comes with Jaart: its file in resources/ and the frame shown when nobody says, or how it is made."""
 
-    file: str
+    file: str = ""
     frame: int | None = None
+    make: Callable[[], Scene] | None = None
 
 
 #: Built-in scenes by name.
-BUILT_IN: Mapping[str, BuiltIn] = {"splash": BuiltIn("splash.npz", 2), "standard": BuiltIn("standard.xml")}
+BUILT_IN: Mapping[str, BuiltIn] = {
+    "splash": BuiltIn("splash.npz", 2), "standard": BuiltIn("standard.xml"), "bumpy": BuiltIn(make=bumpy_sphere)}
 
 
 def load(source: str | PathLike[str], frame: int | None = None) -> Scene:
@@ -38,9 +42,7 @@ def load(source: str | PathLike[str], frame: int | None = None) -> Scene:
     expected.
     """
     if isinstance(source, str) and source in BUILT_IN:
-        built_in = BUILT_IN[source]
-        scene = load(resource(built_in.file), built_in.frame if frame is None else frame)
-        return dataclasses.replace(scene, source=source)
+        return _built_in(source, frame)
     path = Path(source)
     _check_file(path)
     try:
@@ -53,6 +55,16 @@ def load(source: str | PathLike[str], frame: int | None = None) -> Scene:
         raise FileError(path, f"cannot be read: {error.strerror or error}") from None
     except MemoryError:
         raise FileError(path, "does not fit into memory") from None
+
+
+def _built_in(name: str, frame: int | None) -> Scene:
+    built_in = BUILT_IN[name]
+    if built_in.make is None:
+        scene = load(resource(built_in.file), built_in.frame if frame is None else frame)
+    else:
+        check_frame(Path(name), frame, 1)
+        scene = built_in.make()
+    return dataclasses.replace(scene, source=name)
 
 
 def _check_file(path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Reads lattices from .npz: `levels` (nx, ny, nz), or a series `fill` (t, nx, ny, nz)."""
+"""Reads .npz: lattices `levels` (nx, ny, nz), series of them `fill` (t, nx, ny, nz), clouds `points` (N, 3)."""
 
 from __future__ import annotations
 
@@ -8,26 +8,28 @@ from pathlib import Path
 import numpy as np
 
 from jaart.core.errors import FileError
+from jaart.core.io import cloud_npz
 from jaart.core.io.npy import DAMAGE, Archive
 from jaart.core.io.values import check_frame, fill_levels
 from jaart.core.scene import Array, Scene
 
 
 def read(path: Path, frame: int | None = None) -> Scene:
-    """The lattice in an .npz.
+    """The lattice or the cloud in an .npz.
 
-    Optional beside it: time_s (t), seconds; cell_size_m, metres; solid (nx, ny, nz), which cells are an obstacle.
-    frame: which of a series, the first when None. Raises FileError.
+    Optional beside a lattice: time_s (t), seconds; cell_size_m, metres; solid (nx, ny, nz), which cells are an
+    obstacle; beside points: normals (N, 3). frame: which of a series, the first when None. Raises FileError.
     """
     try:
         with zipfile.ZipFile(path) as zipped:
-            return _scene(Archive(path, zipped), frame)
+            archive = Archive(path, zipped)
+            name = _main_array(archive)
+            return cloud_npz.scene(archive, frame) if name == "points" else _lattice(archive, name, frame)
     except DAMAGE as error:
         raise FileError(path, f"is no whole .npz file: {error}") from None
 
 
-def _scene(archive: Archive, frame: int | None) -> Scene:
-    name = _lattice_name(archive)
+def _lattice(archive: Archive, name: str, frame: int | None) -> Scene:
     series = name == "fill"
     shape = archive.header(name).shape
     wanted = "(t, nx, ny, nz)" if series else "(nx, ny, nz)"
@@ -43,14 +45,13 @@ def _scene(archive: Archive, frame: int | None) -> Scene:
                  time=_time(archive, frame, frames), notes=clipped + obstacles)
 
 
-def _lattice_name(archive: Archive) -> str:
-    for name in ("levels", "fill"):
+def _main_array(archive: Archive) -> str:
+    for name in ("levels", "fill", "points"):
         if name in archive:
             return name
-    if "points" in archive:
-        raise archive.error("points", "is a point cloud, which this version cannot read yet; expected a lattice")
     held = ", ".join(archive.members) or "nothing"
-    raise FileError(archive.path, f"holds {held}; expected an array levels (nx, ny, nz) or fill (t, nx, ny, nz)")
+    raise FileError(archive.path, f"holds {held}; expected an array levels (nx, ny, nz), fill (t, nx, ny, nz) "
+                                  "or points (N, 3)")
 
 
 def _without_obstacles(archive: Archive, levels: Array) -> tuple[Array, tuple[str, ...]]:

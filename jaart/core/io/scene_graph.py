@@ -1,4 +1,4 @@
-"""Reads model scenes from XML: `<SceneGraph raster="16">` with spheres and boxes [T §3.3.3]."""
+"""Reads model scenes from XML: `<SceneGraph raster="16">` with spheres and boxes [T §3.3.3], and the other solids."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from xml.sax.handler import ContentHandler
 import defusedxml.sax
 from defusedxml.common import DefusedXmlException
 
-from jaart.core.errors import FileError
+from jaart.core.errors import FileError, SettingsError
 from jaart.core.io.values import check_frame
 from jaart.core.scene import Model, Scene
-from jaart.core.shapes import Box, Solid, Sphere, Vector
+from jaart.core.shapes import AXES, Box, Cylinder, Ellipsoid, Solid, Sphere, Torus, Vector
 
 MAX_BYTES = 16 << 20
 MAX_SOLIDS = 10_000
@@ -25,11 +25,13 @@ RASTER = (2, 2048)
 _NUMBER = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]{1,3})?")
 _WHOLE = re.compile(r"[0-9]{1,18}")
 
-#: What may stand in what, and the attributes each element must have.
-CHILDREN = {"": ("SceneGraph",), "SceneGraph": ("Sphere", "Box"), "Sphere": ("location",), "Box": ("location",),
-            "location": ()}
-ATTRIBUTES = {"SceneGraph": ("raster",), "Sphere": ("radius",), "Box": ("width", "height", "depth"),
-              "location": ("x", "y", "z")}
+#: The attributes each element must have.
+SOLIDS = {"Sphere": ("radius",), "Box": ("width", "height", "depth"), "Torus": ("major", "minor", "axis"),
+          "Cylinder": ("radius", "height", "axis"), "Ellipsoid": ("width", "height", "depth")}
+ATTRIBUTES = {"SceneGraph": ("raster",), **SOLIDS, "location": ("x", "y", "z")}
+#: What may stand in what.
+CHILDREN: dict[str, tuple[str, ...]] = {"": ("SceneGraph",), "SceneGraph": tuple(SOLIDS), "location": (),
+                                        **dict.fromkeys(SOLIDS, ("location",))}
 
 
 def read(path: Path, frame: int | None = None) -> Scene:
@@ -64,7 +66,8 @@ class _SceneGraph(ContentHandler):
         self.raster = 0
         self.solids: list[Solid] = []
         self.notes: list[str] = []
-        self.sizes: tuple[float, ...] = ()
+        self.sizes: dict[str, float] = {}
+        self.axis: Vector = AXES["z"]
         self.location: Vector | None = None
         self.locator: Any = None
 
@@ -95,14 +98,16 @@ class _SceneGraph(ContentHandler):
             x, y, z = (self._number(name, *pair) for pair in zip(ATTRIBUTES[name], values, strict=True))
             self.location = x, y, z
         else:
-            self.sizes = tuple(self._size(name, *pair) for pair in zip(ATTRIBUTES[name], values, strict=True))
+            texts = dict(zip(ATTRIBUTES[name], values, strict=True))
+            self.axis = self._axis(name, texts.pop("axis", "z"))
+            self.sizes = {key: self._size(name, key, text) for key, text in texts.items()}
 
     def endElement(self, name: str) -> None:
         self.open.pop()
-        if name in ("Sphere", "Box"):
+        if name in SOLIDS:
             self._add(name)
         elif name == "SceneGraph" and not self.solids:
-            raise self.error("holds no Sphere and no Box", name)
+            raise self.error(f"holds no {' and no '.join(SOLIDS)}", name)
 
     def characters(self, content: str) -> None:
         if content.strip():
@@ -113,15 +118,23 @@ class _SceneGraph(ContentHandler):
             raise self.error("has no <location x= y= z=>", name)
         if len(self.solids) >= MAX_SOLIDS:
             raise self.error(f"comes after {MAX_SOLIDS} others, which is the limit", name)
-        if name == "Sphere":
-            self.solids.append(Sphere(self.location, self.sizes[0]))
-        else:
-            self.solids.append(Box(self.location, (self.sizes[0], self.sizes[1], self.sizes[2])))
+        try:
+            self.solids.append(_solid(name, self.location, self.sizes, self.axis))
+        except SettingsError as error:
+            raise self.error(str(error), name) from None
         low, high = self.solids[-1].bounds
         if low.min() < -1e-9 or high.max() > 1 + 1e-9:
             self.notes.append(f"<{name}> in line {self.locator.getLineNumber()} reaches out of the unit cube, "
                               "which cuts it off")
         self.location = None
+
+    def _axis(self, name: str, text: str) -> Vector:
+        if text in AXES:
+            return AXES[text]
+        parts = text.split(" ")
+        if len(parts) != 3 or not all(_NUMBER.fullmatch(part) and abs(float(part)) <= LARGEST for part in parts):
+            raise self.error(f"axis = {text[:40]!r}; expected x, y, z or a direction of three numbers", name)
+        return float(parts[0]), float(parts[1]), float(parts[2])
 
     def _attributes(self, name: str, attributes: dict[str, str]) -> list[str]:
         wanted = ATTRIBUTES[name]
@@ -149,3 +162,17 @@ class _SceneGraph(ContentHandler):
         if number <= 0:
             raise self.error(f"{key} = {text[:40]!r}; expected a number above 0", name)
         return number
+
+
+def _solid(name: str, centre: Vector, sizes: dict[str, float], axis: Vector) -> Solid:
+    """The solid of an element. Raises SettingsError where its sizes do not fit together."""
+    if name == "Sphere":
+        return Sphere(centre, sizes["radius"])
+    if name == "Torus":
+        return Torus(centre, axis, sizes["major"], sizes["minor"])
+    if name == "Cylinder":
+        return Cylinder(centre, axis, sizes["radius"], sizes["height"])
+    width, height, depth = sizes["width"], sizes["height"], sizes["depth"]
+    if name == "Ellipsoid":
+        return Ellipsoid(centre, (width / 2, height / 2, depth / 2))
+    return Box(centre, (width, height, depth))

@@ -2,52 +2,55 @@
 
 from __future__ import annotations
 
-from math import nan, sqrt
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
-from jaart.core.kernels.iterate import along, dot
+from jaart.core.kernels.call import evaluate_at
 from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.judge import angle_energy
 from jaart.core.kernels.near import surfels_near
-from jaart.core.kernels.records import Array, Cell, Cells, Vector
-from jaart.core.kernels.sums import mahalanobis_sums, nearest, shifted_weight
-from jaart.core.kernels.tangent import tangent
+from jaart.core.kernels.place import centre_of
+from jaart.core.kernels.records import Array, Cell, Plan, Rule, Sites, Vector
+from jaart.core.kernels.sums import mahalanobis_sums
+from jaart.core.kernels.vectors import along, dot, length
+from jaart.core.kernels.weigh import weigh
 
 
 @kernel(STRICT)
-def sample(cells: Cells, h: float, c: float, o: Vector, d: Vector, ts: Array, of_cell: NDArray[np.int64],
-           energies: Array) -> None:
-    """Write e_ts [T 2.20], e_oc [T 2.22] and e_M [T 2.18] at each t; NaN where no surfel is near.
+def sample(sites: Sites, plan: Plan, o: Vector, d: Vector, ts: Array, places: NDArray[np.int64], energies: Array,
+           work: Array, fit: Array) -> None:
+    """Write e_ts [T 2.20], e_oc [T 2.22], e_M [T 2.18] and e_angle [T 2.23] at each t; NaN where nothing is near.
 
-    ts: (K,); of_cell: (K, 3) the cell whose neighbourhood counts at each; energies: (3, K).
+    ts: (K,); places: (K, 3) the cell or ball whose neighbourhood counts at each; energies: (4, K). e_ts is the
+    step to what the chosen surface makes of x: f over the slope of its normal.
     """
     for i in range(ts.shape[0]):
-        cell = (of_cell[i, 0], of_cell[i, 1], of_cell[i, 2])
-        near = surfels_near(cells, cell)
+        energies[0, i] = energies[1, i] = energies[2, i] = energies[3, i] = nan
+        place = (places[i, 0], places[i, 1], places[i, 2])
+        near, centre = surfels_near(sites, place), centre_of(sites, place)
         if near.size == 0:
-            energies[0, i] = energies[1, i] = energies[2, i] = nan
             continue
-        x = along((o[0] - (cell[0] + 0.5), o[1] - (cell[1] + 0.5), o[2] - (cell[2] + 0.5)), d, ts[i])
-        state, f, n, off, _, _ = tangent(near, x, h)
-        s, total = mahalanobis_sums(near, x, h, c)
-        energies[0, i] = f / dot(n, d) if state == r.CONTINUE else nan
-        energies[1, i] = sqrt(dot(off, off))
-        energies[2, i] = total / s
+        x = along((o[0] - centre[0], o[1] - centre[1], o[2] - centre[2]), d, ts[i])
+        v = evaluate_at(plan.how.evaluate, near, x, plan.rule, r.VALUE_ONLY, work, fit)
+        if v.state == r.FEW_NEIGHBOURS:
+            continue
+        if v.state == r.CONTINUE:
+            energies[0, i], energies[3, i] = v.f / dot(v.n, d), angle_energy(v.n, v.off)
+        s, _ = weigh(near, x, plan.rule, work)
+        energies[1, i] = length(v.off)
+        energies[2, i] = mahalanobis_sums(near, x, plan.rule.c, work) / s
 
 
 @kernel(STRICT)
-def write_weights(cells: Cells, cell: Cell, x: Vector, h: float, weights: Array) -> None:
-    """Write the weights θ_N of the surfels near a cell at x, sum 1, into (N,) [T §2.3.6].
+def write_weights(sites: Sites, place: Cell, x: Vector, rule: Rule, weights: Array) -> None:
+    """Write the weights θ_N of the N surfels near a place at x, sum 1, into weights[:N] [T §2.3.6].
 
-    x: relative to the cell's centre.
+    x: relative to the place's centre; weights: (2·N,).
     """
-    near, per_h = surfels_near(cells, cell), 1.0 / h
-    nearest_one = nearest(near, x, per_h)
-    total = 0.0
+    near = surfels_near(sites, place)
+    s, _ = weigh(near, x, rule, weights)
     for i in range(near.size):
-        weights[i] = shifted_weight(near, i, nearest_one, x, per_h)
-        total += weights[i]
-    for i in range(near.size):
-        weights[i] /= total
+        weights[i] = weights[i] / s

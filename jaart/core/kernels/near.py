@@ -1,27 +1,32 @@
-"""The surfels near a cell, and one number of one of them."""
+"""The surfels near a place, and one number of one of them."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.records import Cell, Cells, Near, Unsigned, Vector
+from jaart.core.kernels.records import Cell, Near, Sites, Unsigned, Vector
 
 _THREE, _SIX = np.uint64(3), np.uint64(6)
 
 
 @kernel(STRICT)
-def surfels_near(cells: Cells, cell: Cell) -> Near:
-    """The surfels near a cell of the lattice, relative to its centre."""
-    shape = cells.empty.shape
-    number = (cell[0] * shape[1] + cell[1]) * shape[2] + cell[2]
-    first, last = np.uint64(cells.first[number]), np.uint64(cells.first[number + 1])
-    return Near(cells.columns, _SIX * first, last - first)
+def place_number(sites: Sites, cell: Cell) -> int:
+    """Number of a cell, C order, or of a ball."""
+    return cell[0] if sites.shape[0] == 0 else (cell[0] * sites.shape[1] + cell[1]) * sites.shape[2] + cell[2]
+
+
+@kernel(STRICT)
+def surfels_near(sites: Sites, cell: Cell) -> Near:
+    """The surfels near a cell of a lattice or in a ball's neighbourhood, relative to its centre."""
+    number = place_number(sites, cell)
+    first, last = np.uint64(sites.first[number]), np.uint64(sites.first[number + 1])
+    return Near(sites.columns, _SIX * first, last - first)
 
 
 @kernel(STRICT)
 def point(near: Near, i: Unsigned) -> Vector:
-    """Position of surfel i, relative to the cell's centre."""
+    """Position of surfel i, relative to the place's centre."""
     at, n = near.base + i, near.size
     return near.columns[at], near.columns[at + n], near.columns[at + n + n]
 

@@ -1,22 +1,25 @@
-"""A ray through a lattice: empty cells skipped, every cell with a surfel a start, the first hit its end."""
+"""A ray through a lattice: empty cells skipped, the search begun cell after cell, the first hit its end."""
 
 from __future__ import annotations
 
 from math import isfinite, nan, sqrt
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
-from jaart.core.kernels.iterate import iterate
+from jaart.core.kernels.call import search_from
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.records import Array, Cells, Out, RayEnd, Search, Vector
-from jaart.core.kernels.traversal import advance, axes_of, cell_at, clip, inside, start_at
+from jaart.core.kernels.log import end_log
+from jaart.core.kernels.place import centre_of
+from jaart.core.kernels.records import Array, Cell, Cells, End, Out, Plan, RayEnd, Start, Vector
+from jaart.core.kernels.traversal import Axes, advance, axes_of, cell_at, clip, inside, start_at
 from jaart.core.kernels.unowned import unowned, unowned_cells
+from jaart.core.kernels.vectors import along
 
 #: From farther away one unit in the last place of the origin is wider than a cell.
 _FAR = 1e15
+_NOTHING = (nan, nan, nan)
 
 
 @kernel(STRICT)
@@ -29,63 +32,127 @@ def is_bad(o: Vector, d: Vector) -> bool:
 
 
 @kernel(STRICT)
-def end_log(rows: Array, row: int, state: int) -> None:
-    """Write the end of a start into the row of its last step."""
-    if row <= rows.shape[0]:
-        rows[row - 1, r.END] = state
+def no_hit(state: int) -> RayEnd:
+    """The end of a ray that nothing was searched on."""
+    return RayEnd(state, nan, _NOTHING, _NOTHING, nan, nan, 0, 0, 0, 0, 0, 0, -1)
 
 
 @kernel(STRICT)
-def trace_ray(cells: Cells, search: Search, o: Vector, d: Vector, rows: Array) -> RayEnd:
+def added(before: RayEnd, end: End) -> RayEnd:
+    """A ray's end after one more start."""
+    return RayEnd(end.state, end.t, end.point, end.n, end.energy, end.off, end.steps,
+                  before.evaluations + end.evaluations, before.used + end.used, before.cells,
+                  before.lowered + end.lowered, before.rows + end.steps, before.missing)
+
+
+@kernel(STRICT)
+def visiting(end: RayEnd, cells: int) -> RayEnd:
+    """A ray's end with so many cells or balls visited."""
+    return RayEnd(end.state, end.t, end.point, end.n, end.energy, end.off, end.iterations, end.evaluations, end.used,
+                  cells, end.lowered, end.rows, end.missing)
+
+
+@kernel(STRICT)
+def has_hit(state: int) -> bool:
+    """Whether a state is a hit."""
+    return state == r.CONVERGED or state == r.FLOOR
+
+
+@kernel(STRICT)
+def next_cell(cells: Cells, axes: Axes, cell: Cell, t: float, first_t: float, skip: int) -> tuple[float, Cell]:
+    """Where a ray goes on after a cell, and the skipped ones around it; by even steps when so asked."""
+    t_exit, ahead = advance(axes, cell, skip)
+    if cells.uniform == 0.0:
+        return t_exit, ahead
+    steps = np.floor((t - first_t) / cells.uniform + 0.5) + 1.0
+    if skip > 0:
+        steps = max(steps, np.floor((t_exit - first_t) / cells.uniform))
+    t = first_t + steps * cells.uniform
+    return t, cell_at(axes, t)
+
+
+@kernel(STRICT)
+def start_of(cells: Cells, axes: Axes, cell: Cell, o: Vector, d: Vector, t: float, leave: float, trust: float,
+             before: float, number: int) -> tuple[bool, Start]:
+    """Whether a search begins in a cell that the ray is in from t on, and from where.
+
+    leave: t where the ray leaves the lattice; trust: how far a search may go; before: f at the end of the
+    stretch before.
+    """
+    if cells.stretches == 1:
+        begin = cell
+        found = int(cells.empty[cell]) <= cells.halo
+        high = min(advance(axes, cell, 0)[0], leave) - t
+        low, high = 0.0, max(high, 0.0)
+    else:
+        begin = start_at(cells.empty, axes, cell)
+        found = begin[0] >= 0
+        low, high, before = -trust, trust, nan
+    centre = centre_of(cells.sites, begin)
+    base = along((o[0] - centre[0], o[1] - centre[1], o[2] - centre[2]), d, t)
+    return found, Start(begin, base, t, 0.0, low, high, before, number)
+
+
+@kernel(STRICT)
+def trace_ray(cells: Cells, plan: Plan, o: Vector, d: Vector, rows: Array, work: Array, fit: Array) -> RayEnd:
     """The first hit of a ray, or how its last start ended.
 
     o, d: origin and unit direction, in cells; rows: (L, LOG_WIDTH) log of every step, L = 0 for none.
     """
-    nothing = (nan, nan, nan)
     if is_bad(o, d):
-        return r.BAD_RAY, nan, nothing, nothing, nan, nan, 0, 0, 0, 0
+        return no_hit(r.BAD_RAY)
     shape = cells.empty.shape
     axes = axes_of(o, d, shape)
     t, leave = clip(axes)
-    if not t <= leave:
-        return r.BACKGROUND, nan, nothing, nothing, nan, nan, 0, 0, 0, 0
-    state, step, off, visited = r.BACKGROUND, nan, nan, 0
-    none: Any = np.int64(0)  # no literal, for which the callees would be compiled once more
-    iterations = evaluations = used = starts = none
-    cell = cell_at(axes, t)
+    end, visited, number, before = no_hit(r.BACKGROUND), 0, 0, nan
+    first_t = t
+    cell = cell_at(axes, t) if t <= leave else (-1, -1, -1)
     while inside(cell, shape):
         visited += 1
-        start = start_at(cells.empty, axes, cell)
-        if start[0] >= 0:
-            state, t_hit, point, n, step, off, iterations, touched = iterate(
-                cells, search, o, d, start, t, starts, rows, evaluations)
-            evaluations, used, starts = evaluations + iterations, used + touched, starts + 1
-            if iterations > 0:
-                end_log(rows, evaluations, state)
-            if state == r.CONVERGED or state == r.FLOOR:
-                return state, t_hit, point, n, step, off, iterations, evaluations, used, visited
-        t, cell = advance(axes, cell, max(int(cells.empty[cell]) - 1, 0))
+        found, start = start_of(cells, axes, cell, o, d, t, leave, plan.how.trust, before, number)
+        before = nan
+        if found:
+            one = search_from(plan.search, cells.sites, plan.rule, plan.how, plan.bounds, d, start, rows, end.rows,
+                              work, fit)
+            number, before = number + 1, one.f
+            if one.steps > 0 or one.state != r.BACKGROUND:
+                end = added(end, one)
+                end_log(rows, end.rows, one.state)
+            if has_hit(one.state):
+                break
+        free = int(cells.empty[cell]) - (cells.halo if cells.stretches == 1 else 0)
+        t, cell = next_cell(cells, axes, cell, t, first_t, max(free - 1, 0))
         if not t < leave:  # a skipped block may reach past the lattice
             break
-    return state, nan, nothing, nothing, step, off, iterations, evaluations, used, visited
+    return visiting(end, visited)
 
 
 @kernel(STRICT)
-def trace_rays(cells: Cells, search: Search, origins: Array, directions: Array, pixels: NDArray[np.int64],
-               out: Out) -> None:
-    """Trace some of the rays and write each into its row of the columns.
+def write_end(out: Out, to: int, end: RayEnd) -> None:
+    """Write a ray's end into its row of the columns."""
+    out.status[to], out.t[to] = end.state, end.t
+    for axis in range(3):
+        out.point[to, axis], out.normal[to, axis] = end.point[axis], end.n[axis]
+    out.energy[to], out.off_centre[to] = abs(end.energy), end.off
+    out.iterations[to], out.evaluations[to] = end.iterations, end.evaluations
+    out.neighbours[to], out.cells[to], out.lowered[to] = end.used, end.cells, end.lowered
 
-    origins, directions: (R, 3) in cells, directions of unit length; pixels: rows to trace.
+
+@kernel(STRICT)
+def trace_rays(cells: Cells, plan: Plan, origins: Array, directions: Array, pixels: NDArray[np.int64], out: Out,
+               rows: Array, work: Array, fit: Array) -> int:
+    """Trace some of the rays and write each into its row of the columns; returns the rows of the log it wrote.
+
+    origins, directions: (R, 3) in cells, directions of unit length; pixels: rows to trace; rows: the log of a
+    single ray, (0, LOG_WIDTH) for none; work, fit: scratch of this call alone.
     """
-    cells, no_log = unowned_cells(cells), unowned(np.empty((0, r.LOG_WIDTH)))
+    cells, log = unowned_cells(cells), unowned(rows)
+    scratch, fitted, written = unowned(work), unowned(fit), 0
     for i in range(pixels.shape[0]):
         to = pixels[i]
         o = (origins[to, 0], origins[to, 1], origins[to, 2])
         d = (directions[to, 0], directions[to, 1], directions[to, 2])
-        state, t, point, n, step, off, iterations, evaluations, used, visited = trace_ray(cells, search, o, d, no_log)
-        out.status[to], out.t[to] = state, t
-        for axis in range(3):
-            out.point[to, axis], out.normal[to, axis] = point[axis], n[axis]
-        out.energy[to], out.off_centre[to] = abs(step), off
-        out.iterations[to], out.evaluations[to] = iterations, evaluations
-        out.neighbours[to], out.cells[to] = used, visited
+        end = trace_ray(cells, plan, o, d, log, scratch, fitted)
+        write_end(out, to, end)
+        written = end.rows
+    return written

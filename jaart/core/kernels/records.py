@@ -14,23 +14,24 @@ Cell = tuple[int, int, int]
 Unsigned: TypeAlias = Any
 
 
-class Cells(NamedTuple):
-    """A lattice's cells with the surfels near each.
+class Sites(NamedTuple):
+    """Places with the surfels near each: the cells of a lattice, or balls of a cloud.
 
-    empty: (nx, ny, nz) Chebyshev distance to the nearest cell with a surfel, in cells, 0 = has one;
-    first: (nx·ny·nz + 1,) where each cell's surfels begin in ids, C order of cells;
-    ids: (M,) the surfels near each cell; columns: (6·M,) for each cell with N of them N times x, then y, z
-    relative to its centre and the three parts of the normal, each contiguous so that sums vectorise.
+    shape: cells along each axis, (0, 0, 0) for balls; centres: (B, 3) of balls, (0, 3) for cells;
+    first: (number of places + 1,) where each one's surfels begin in ids, cells in C order; ids: (M,) the
+    surfels near each place; columns: (6·M,) for each place with N of them N times x, then y, z relative to its
+    centre and the three parts of the normal, each contiguous so that sums vectorise.
     """
 
-    empty: NDArray[np.uint8]
+    shape: Cell
+    centres: Array
     first: NDArray[np.int64]
     ids: NDArray[np.int32]
     columns: Array
 
 
 class Near(NamedTuple):
-    """The surfels near one cell: as many as size in the columns from base on.
+    """The surfels near one place: as many as size in the columns from base on.
 
     The numbers are unsigned: a signed index would be checked for its sign, and the sums stay scalar.
     """
@@ -40,19 +41,165 @@ class Near(NamedTuple):
     size: Unsigned
 
 
-class Search(NamedTuple):
-    """What the iteration needs to know; lengths in cells.
+class Rule(NamedTuple):
+    """How a point is evaluated; lengths as in the scene.
 
-    h: feature size; arrived: a shorter step ends it; cap: steps a start; trust: how far from the start;
-    growth: 1 to give up as soon as |f| grows; max_off_centre: bound on |a(x) - x| of a hit.
+    weight, normal: numbers of WEIGHTS and NORMALS; h: feature size; reach: surfels farther than this from x do
+    not count; k: only so many nearest ones count, 0 = all; oriented: 1 to turn a covariance normal to the
+    surfels' side; degree: of the polynomial; c: of the Mahalanobis energy.
     """
 
+    weight: int
+    normal: int
     h: float
+    reach: float
+    k: int
+    oriented: int
+    degree: int
+    c: float
+
+
+class Value(NamedTuple):
+    """What a surface is at a point x.
+
+    state: CONTINUE, or why there is nothing (f and n are NaN then); f: the implicit function; n: unit normal;
+    off: a(x) - x; weight: Σθ, every weight divided by exp(shift); gradient: ∇f where it was asked for, else NaN;
+    degree: of the polynomial that was fitted.
+    """
+
+    state: int
+    f: float
+    n: Vector
+    off: Vector
+    weight: float
+    shift: float
+    gradient: Vector
+    degree: int
+
+
+class Search(NamedTuple):
+    """What a search along a ray needs to know; lengths as in the scene.
+
+    kind: number of SEARCHES; evaluate: address of the surface's evaluator; arrived: a shorter step ends it;
+    by_value: 1 where |f| is compared in its place [A §4]; cap: steps a start; trust: how far from the start;
+    growth: 1 to give up as soon as |f| grows; step: of march; energy, emphasise, level: of minimise;
+    true_normal: 1 to give hits the normal -∇f.
+    """
+
+    kind: int
+    evaluate: int
     arrived: float
+    by_value: int
     cap: int
     trust: float
     growth: int
-    max_off_centre: float
+    step: float
+    energy: int
+    emphasise: int
+    level: float
+    true_normal: int
+
+
+class Bounds(NamedTuple):
+    """What a hit must keep [T §2.5]: infinite where nothing is asked.
+
+    off_centre: largest |a(x) - x|; log_weight: least log Σθ; nearest: largest distance to the nearest surfel;
+    angle: largest |<c/|c|, n>|; gap: least (λ1 - λ0)/λ2.
+    """
+
+    off_centre: float
+    log_weight: float
+    nearest: float
+    angle: float
+    gap: float
+
+
+class Start(NamedTuple):
+    """Where a search begins on a ray.
+
+    cell: the cell, or the ball's number; base: the ray's point at t, relative to the place's centre; t: distance
+    from the ray's origin; s: the first guess, from t on; low, high: the search stays within, from t on;
+    before: f at the end of the stretch before, NaN when there is none; number: of this start on the ray.
+    """
+
+    cell: Cell
+    base: Vector
+    t: float
+    s: float
+    low: float
+    high: float
+    before: float
+    number: int
+
+
+class End(NamedTuple):
+    """How a start ended; point and n are NaN unless it hit.
+
+    t: of the hit; energy: the last step, or the energy's minimum; off: off-centre value; steps: iterations;
+    evaluations: of the surface; used: surfels summed over them; lowered: evaluations with fewer degrees than
+    asked for; f: at the end of the stretch.
+    """
+
+    state: int
+    t: float
+    point: Vector
+    n: Vector
+    energy: float
+    off: float
+    steps: int
+    evaluations: int
+    used: int
+    lowered: int
+    f: float
+
+
+class Plan(NamedTuple):
+    """All that a ray's search needs beside the scene; search: address of the kernel that searches."""
+
+    rule: Rule
+    how: Search
+    bounds: Bounds
+    search: int
+
+
+class Cells(NamedTuple):
+    """A lattice as rays cross it.
+
+    sites: its cells; empty: (nx, ny, nz) Chebyshev distance to the nearest cell with a surfel, in cells, 0 = has
+    one; halo: cells farther than this from one have no surfels near; stretches: 1 when every cell with surfels
+    near is searched from face to face, 0 when a search starts where a cell with a surfel is entered; uniform:
+    length of even steps through the cells, 0 for exact traversal.
+    """
+
+    sites: Sites
+    empty: NDArray[np.uint8]
+    halo: int
+    stretches: int
+    uniform: float
+
+
+class RayEnd(NamedTuple):
+    """How a ray ended; t, point and n are NaN without a hit, energy and off without a start.
+
+    energy: length of the last step, or the minimum; off: off-centre value; iterations: steps of the last start;
+    evaluations: of all starts; used: surfels summed over them; cells: cells or balls visited; lowered:
+    evaluations with fewer degrees than asked for; rows: written to the log; missing: a ball whose surfels are
+    not gathered yet, else -1.
+    """
+
+    state: int
+    t: float
+    point: Vector
+    n: Vector
+    energy: float
+    off: float
+    iterations: int
+    evaluations: int
+    used: int
+    cells: int
+    lowered: int
+    rows: int
+    missing: int
 
 
 class Out(NamedTuple):
@@ -67,6 +214,7 @@ class Out(NamedTuple):
     evaluations: NDArray[np.int32]
     neighbours: NDArray[np.int32]
     cells: NDArray[np.int32]
+    lowered: NDArray[np.int32]
     status: NDArray[np.uint8]
 
 
@@ -76,7 +224,16 @@ LOG_WIDTH = 18
 
 #: Numbers of the end states, in the order of STATUS_NAMES; CONTINUE while a search goes on.
 (CONVERGED, BACKGROUND, CAP, LEFT_TRUST, PARALLEL, FEW_NEIGHBOURS, UNDEFINED_NORMAL, BOUNDED, FLOOR,
- UNDECIDED, BAD_RAY) = range(11)
+ UNDECIDED, BAD_RAY, BOUNDED_WEIGHT, BOUNDED_NEAREST, BOUNDED_ANGLE, BOUNDED_GAP) = range(15)
 CONTINUE = 255
-#: (state, t, point, normal, last step, off-centre, iterations, evaluations, neighbours, cells) of a ray.
-RayEnd = tuple[int, float, Vector, Vector, float, float, int, int, int, int]
+
+#: Numbers of weights, normals, searches and energies.
+GAUSSIAN, HAT, SQUARED_HAT, WENDLAND = range(4)
+SURFEL, COVARIANCE, COVARIANCE_AT_X = range(3)
+ITERATE, SECANT, NEWTON, MINIMISE, MARCH, SAFE, CENTRES = range(7)
+TANGENT_STEP, OFF_CENTRE, MAHALANOBIS, ANGLE, TANGENT = range(5)
+
+#: Values of `want`: the gradient costs a pass of its own.
+VALUE_ONLY, WITH_GRADIENT = range(2)
+#: Room for a fitted polynomial: its 15 coefficients.
+FIT_SIZE = 15

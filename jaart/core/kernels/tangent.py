@@ -2,36 +2,67 @@
 
 from __future__ import annotations
 
-from math import nan, sqrt
+from math import nan
 
+from jaart.core.kernels import records as r
 from jaart.core.kernels.jit import kernel
-from jaart.core.kernels.records import CONTINUE, UNDEFINED_NORMAL, Near, Vector
-from jaart.core.kernels.sums import nearest, shifted_tangent_sums, square_distance, tangent_sums
+from jaart.core.kernels.normals import covariance_normal, surfel_normal
+from jaart.core.kernels.records import Array, Near, Rule, Value, Vector
+from jaart.core.kernels.sums import covariance_gradient_sums, offset_sums, surfel_gradient_sums
+from jaart.core.kernels.vectors import dot, scaled
+from jaart.core.kernels.weigh import weigh
 
-#: Below this Σθ the sums are done again with shifted weights (a distance of about 12 h).
-_FAINT = 1e-60
-#: |Σθn| below this share of Σθ leaves no normal: opposite surfels cancel.
-_CANCELLED = 1e-8
-
-#: (state, f, normal, off-centre vector, Σ, shift)
-Tangent = tuple[int, float, Vector, Vector, float, float]
+_NOTHING = (nan, nan, nan)
 
 
 @kernel()
-def tangent(near: Near, x: Vector, h: float) -> Tangent:
-    """f [T 2.15], the normal n(x) [T 2.13] and the off-centre vector a(x) - x [T 2.12] at x.
+def no_value(state: int, off: Vector, s: float, shift: float) -> Value:
+    """What there is where no surfel counts, or no normal is defined."""
+    return Value(state, nan, _NOTHING, off, s, shift, _NOTHING, 0)
 
-    near: at least one surfel; x: relative to the cell's centre; h: feature size. The state is CONTINUE, or
-    UNDEFINED_NORMAL when the normals cancel (f and n are NaN then). log Σθ is shift + log Σ.
+
+@kernel()
+def tangent_surfel(near: Near, x: Vector, rule: Rule, want: int, w: Array, fit: Array) -> Value:
+    """f(x) with the average of the surfels' normals [T 2.13].
+
+    near: surfels; x: relative to their place's centre; want: VALUE_ONLY or WITH_GRADIENT; w: (2·N,) for the
+    weights; fit: unused. ∇f = (2/h²) Σθ_N (n_i·turn + n·(p_i - a))(p_i - a) - n for the Gaussian.
     """
-    s, sx, sy, sz, mx, my, mz = tangent_sums(near, x, h)
-    shift = 0.0
-    if not s > _FAINT:
-        s, sx, sy, sz, mx, my, mz = shifted_tangent_sums(near, x, h)
-        shift = -square_distance(near, nearest(near, x, 1.0 / h), x, 1.0 / h)
-    off = (sx / s, sy / s, sz / s)
-    m = sqrt(mx * mx + my * my + mz * mz)
-    if not m > _CANCELLED * s:
-        return UNDEFINED_NORMAL, nan, (nan, nan, nan), off, s, shift
-    n = (mx / m, my / m, mz / m)
-    return CONTINUE, n[0] * off[0] + n[1] * off[1] + n[2] * off[2], n, off, s, shift
+    s, shift = weigh(near, x, rule, w)
+    if not s > 0.0:
+        return no_value(r.FEW_NEIGHBOURS, _NOTHING, s, shift)
+    off = scaled(offset_sums(near, x, w), 1.0 / s)
+    state, n, turn = surfel_normal(near, s, off, w)
+    if state != r.CONTINUE:
+        return no_value(state, off, s, shift)
+    gradient = _NOTHING
+    if want == r.WITH_GRADIENT:
+        b, g = surfel_gradient_sums(near, x, rule, n, off, turn, w)
+        gradient = ((g[0] + b * off[0]) / s - n[0], (g[1] + b * off[1]) / s - n[1], (g[2] + b * off[2]) / s - n[2])
+    return Value(state, dot(n, off), n, off, s, shift, gradient, 0)
+
+
+@kernel()
+def tangent_covariance(near: Near, x: Vector, rule: Rule, want: int, w: Array, fit: Array) -> Value:
+    """f(x) with the direction of least spread of the points [A 5, 8, 9]; arguments as of `tangent_surfel`.
+
+    ∇f = (2/h²) Σθ_N (<turn, q><n, q> + n·(p_i - a))(p_i - x) - n, q = p_i - a; about x, q = p_i - x, and
+    f·turn + <c, turn> n are taken off.
+    """
+    s, shift = weigh(near, x, rule, w)
+    if not s > 0.0:
+        return no_value(r.FEW_NEIGHBOURS, _NOTHING, s, shift)
+    off = scaled(offset_sums(near, x, w), 1.0 / s)
+    state, n, turn = covariance_normal(near, x, rule, s, off, w)
+    if state != r.CONTINUE:
+        return no_value(state, off, s, shift)
+    f, gradient = dot(n, off), _NOTHING
+    if want == r.WITH_GRADIENT:
+        about_x = rule.normal == r.COVARIANCE_AT_X
+        centre = (0.0, 0.0, 0.0) if about_x else off
+        b, g = covariance_gradient_sums(near, x, rule, n, off, centre, turn, w)
+        back, own = (f, 1.0 + dot(off, turn)) if about_x else (0.0, 1.0)
+        gradient = ((g[0] + b * off[0]) / s - own * n[0] - back * turn[0],
+                    (g[1] + b * off[1]) / s - own * n[1] - back * turn[1],
+                    (g[2] + b * off[2]) / s - own * n[2] - back * turn[2])
+    return Value(state, f, n, off, s, shift, gradient, 0)

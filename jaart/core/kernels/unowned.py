@@ -13,7 +13,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.records import Cells
+from jaart.core.kernels.records import Cells, Sites
 
 
 @intrinsic
@@ -29,6 +29,13 @@ def unowned(typing_context: Any, array: Any) -> Any:
 
 
 @kernel(STRICT)
+def unowned_sites(sites: Sites) -> Sites:
+    """Places, their arrays without owners."""
+    return Sites(sites.shape, unowned(sites.centres), unowned(sites.first), unowned(sites.ids),
+                 unowned(sites.columns))
+
+
+@kernel(STRICT)
 def unowned_cells(cells: Cells) -> Cells:
-    """The cells of a lattice, their arrays without owners."""
-    return Cells(unowned(cells.empty), unowned(cells.first), unowned(cells.ids), unowned(cells.columns))
+    """A lattice, its arrays without owners."""
+    return Cells(unowned_sites(cells.sites), unowned(cells.empty), cells.halo, cells.stretches, cells.uniform)

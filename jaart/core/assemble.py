@@ -1,0 +1,72 @@
+"""From the settings to what the kernels are handed: numbers in the place of names, addresses of kernels."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from jaart.core.chosen import Chosen, arrival, finite
+from jaart.core.groups.surface import FITTED
+from jaart.core.kernels import call, centres, fitted, march, minimise, project, safe, stepping, tangent
+from jaart.core.kernels import records as r
+from jaart.core.kernels.records import Bounds, Plan, Rule, Search
+from jaart.core.meaning import oriented
+from jaart.core.scene import Scene
+from jaart.core.settings import Settings
+
+WEIGHTS = {"gaussian": r.GAUSSIAN, "hat": r.HAT, "squared_hat": r.SQUARED_HAT, "wendland": r.WENDLAND}
+NORMALS = {"surfel": r.SURFEL, "covariance": r.COVARIANCE, "covariance_at_x": r.COVARIANCE_AT_X}
+SEARCHES = {"iterate": r.ITERATE, "secant": r.SECANT, "newton": r.NEWTON, "minimise": r.MINIMISE, "march": r.MARCH,
+            "safe": r.SAFE, "centres": r.CENTRES}
+ENERGY_NUMBERS = {"tangent": r.TANGENT_STEP, "off_centre": r.OFF_CENTRE, "mahalanobis": r.MAHALANOBIS,
+                  "angle": r.ANGLE}
+
+
+def plan_of(scene: Scene, settings: Settings, values: Chosen) -> Plan:
+    """All that rays need to know beside the surfels; its kernels are compiled or loaded on first use."""
+    rule = rule_of(scene, settings, values)
+    evaluate = call.address_of(evaluator(values), call.EVALUATE)
+    how = Search(kind=SEARCHES[values.search], evaluate=evaluate, arrived=arrival(settings, values),
+                 by_value=int(values.method in FITTED), cap=settings.max_iterations, trust=values.trust,
+                 growth=int(settings.bail == "growth"), step=values.step,
+                 energy=ENERGY_NUMBERS.get(values.method, r.TANGENT_STEP), emphasise=int(settings.emphasise),
+                 level=values.level, true_normal=int(settings.shading_normal == "gradient"))
+    return Plan(rule, how, bounds_of(settings, values), call.address_of(searcher(values), call.SEARCH))
+
+
+def rule_of(scene: Scene, settings: Settings, values: Chosen) -> Rule:
+    """How a point is evaluated."""
+    return Rule(weight=WEIGHTS[values.weight], normal=NORMALS[values.normal], h=values.h,
+                reach=values.radius if values.neighbourhood == "ball" else math.inf,
+                k=settings.k if values.neighbourhood == "knn" else 0,
+                oriented=int(oriented(scene, settings, values)),
+                degree=settings.degree if values.method in FITTED else 0, c=settings.mahalanobis_c)
+
+
+def bounds_of(settings: Settings, values: Chosen) -> Bounds:
+    """What a hit must keep [T §2.5]."""
+    return Bounds(off_centre=values.off_centre, log_weight=finite(settings.min_weight, -math.inf),
+                  nearest=values.nearest, angle=finite(settings.max_angle, math.inf),
+                  gap=finite(settings.min_gap, 0.0))
+
+
+def evaluator(values: Chosen) -> Any:
+    """The kernel that evaluates the surface: only what a scene asks for is compiled or loaded."""
+    if values.method == "polynomial":
+        return fitted.polynomial
+    if values.method == "projection":
+        return project.projection
+    return tangent.tangent_surfel if values.normal == "surfel" else tangent.tangent_covariance
+
+
+#: The kernel of each search.
+SEARCHERS: dict[str, Any] = {
+    "iterate": stepping.step_search, "secant": stepping.step_search, "newton": stepping.step_search,
+    "march": march.march_search, "safe": safe.safe_search, "minimise": minimise.minimise_search,
+    "centres": centres.centre_search,
+}
+
+
+def searcher(values: Chosen) -> Any:
+    """The kernel that searches."""
+    return SEARCHERS[values.search]

@@ -1,0 +1,171 @@
+"""Clouds: their bounds, their own frame, how densely their points lie, and the balls around them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jaart.core.kernels.cover import keep
+from jaart.core.scene import Array, Scene, frozen
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
+
+#: The frame's origin lies on a grid of at most this share of the cloud's longest edge.
+GRID = 1 / 8
+#: Neighbours from whose distance the density is taken, and after how many medians such a distance is an outlier's.
+DENSITY_K, OUTLIER = 6, 10.0
+#: The proposed h in lengths of a point's own square.
+AUTO_H = 1.2
+#: Share of a ball's radius that must lie in another ball before it is left out.
+CORE = 0.5
+
+
+def bounds(scene: Scene) -> tuple[Array, Array]:
+    """Lowest and highest corner (3,) of the box around a cloud's points, in its own coordinates."""
+    return scene.once("bounds", (), lambda: (frozen(_points(scene).min(axis=0)), frozen(_points(scene).max(axis=0))))
+
+
+def diagonal(scene: Scene) -> float:
+    """Length of the diagonal of the box around a cloud's points: the unit "d" of its lengths [A §6]."""
+    low, high = bounds(scene)
+    return float(np.linalg.norm(high - low))
+
+
+def offset(scene: Scene) -> Array:
+    """Origin (3,) of the frame in which a cloud is computed: the middle of its box, on a coarse grid.
+
+    The grid's step is a power of two, at most GRID of the box's longest edge: a cloud that lies about the
+    origin keeps its coordinates, and x - offset is exact for coordinates that were float32, and wherever
+    |x| >= |x - offset|; elsewhere it is off by 2^-53 of the cloud's size at most. A cloud moved by a multiple of
+    the step, or scaled by a power of two, is computed with the same bits.
+    """
+    low, high = bounds(scene)
+    middle, edge = low + (high - low) / 2, float((high - low).max())
+    if edge == 0:
+        return frozen(middle)
+    step = 2.0 ** math.floor(math.log2(edge * GRID))
+    return frozen(np.round(middle / step) * step + 0.0)
+
+
+def local_points(scene: Scene) -> Array:
+    """A cloud's points (N, 3) relative to `offset`: what kernels see. Rays have the same offset subtracted."""
+    return scene.once("local_points", (), lambda: frozen(_points(scene) - offset(scene)))
+
+
+def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.intp]]:
+    """Distances (N, k) from each point to its k nearest others, rising, and which they are (N, k).
+
+    k: at least 1; clipped to N - 1, so a single point has none.
+    """
+    def make() -> tuple[Array, NDArray[np.intp]]:
+        return nearest_others(local_points(scene), k, kd_tree(scene))
+
+    return scene.once("nearest", k, make)
+
+
+def kd_tree(scene: Scene) -> cKDTree:
+    """A tree over `local_points` that finds nearest ones."""
+    from scipy.spatial import cKDTree
+
+    return scene.once("kd_tree", (), lambda: cKDTree(local_points(scene)))
+
+
+def nearest_others(points: Array, k: int, tree: cKDTree | None = None) -> tuple[Array, NDArray[np.intp]]:
+    """Distances (N, k) from each of the points (N, 3) to its k nearest others, and which they are.
+
+    A point that stands in the same place is another one. k is clipped to N - 1. tree: over these points.
+    """
+    from scipy.spatial import cKDTree
+
+    k = min(k, len(points) - 1)
+    if k < 1:
+        return np.empty((len(points), 0)), np.empty((len(points), 0), np.intp)
+    distance, index = (tree or cKDTree(points)).query(points, k + 1, workers=-1)
+    itself = index == np.arange(len(points))[:, None]
+    itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
+    return distance[~itself].reshape(-1, k), index[~itself].reshape(-1, k)
+
+
+def spacing(scene: Scene) -> float:
+    """Mean distance from a point to the nearest one elsewhere: the unit "s" of a cloud's lengths.
+
+    0 when there is no point elsewhere.
+    """
+    def make() -> float:
+        distance = nearest(scene, DENSITY_K)[0][:, :1]  # the neighbours that balls are made of by default
+        apart = distance[distance > 0]
+        return float(apart.mean()) if len(apart) else 0.0
+
+    return scene.once("spacing", (), make)
+
+
+def square(scene: Scene) -> float:
+    """Edge of the square of surface that a point has to itself on average, 1/sqrt(points per area).
+
+    From the mean distance to the 6th neighbour: on an evenly sampled surface pi·distance²/6 is that square. It
+    is the spacing of a regular cloud, but of an irregular or noisy one about twice `spacing`, which pairs of
+    close points make small. 0 when there is no other point.
+    """
+    def make() -> float:
+        distance = nearest(scene, DENSITY_K)[0]
+        if not distance.shape[1]:
+            return 0.0
+        last, k = distance[:, -1], distance.shape[1]
+        inner = last[last <= OUTLIER * np.median(last)]
+        return float(inner.mean()) * math.sqrt(math.pi / k)
+
+    return scene.once("square", (), make)
+
+
+def auto_h(scene: Scene) -> float:
+    """The feature size proposed for a cloud: AUTO_H times `square`.
+
+    The same for even and random samples of a surface: it opens no holes in either and shrinks a radius R by
+    h²/2R. 0 when there is no other point.
+    """
+    return AUTO_H * square(scene)
+
+
+def ball_radii(scene: Scene, ball_k: int) -> Array:
+    """Radius (N,) of the ball around each point, which reaches to its ball_k-th nearest neighbour [A §5].
+
+    ball_k: at least 1; clipped to N - 1, see `notes`. A single point has a ball of radius 0.
+    """
+    def make() -> Array:
+        distance = nearest(scene, ball_k)[0]
+        return frozen(distance[:, -1] if distance.shape[1] else np.zeros(len(distance)))
+
+    return scene.once("ball_radii", ball_k, make)
+
+
+def cover(scene: Scene, ball_k: int) -> NDArray[np.int64]:
+    """Indices, rising, of balls that are enough: the inner half of each left-out ball lies in one that is kept.
+
+    On an even sample all are kept, on random, scanned and merged ones a half to three quarters. The union loses
+    some of its rim; of a surface that the points sample it loses next to nothing.
+    """
+    def make() -> NDArray[np.int64]:
+        distance, index = nearest(scene, ball_k)
+        kept = np.ones(len(index), dtype=bool)
+        keep(distance, index.astype(np.int64, copy=False), ball_radii(scene, ball_k), CORE, kept)
+        return np.flatnonzero(kept)
+
+    return scene.once("cover", ball_k, make)
+
+
+def notes(scene: Scene, ball_k: int) -> tuple[str, ...]:
+    """What a person should know of the balls: k clipped to the number of points."""
+    others = len(_points(scene)) - 1
+    if ball_k <= others:
+        return ()
+    return (f"ball_k = {ball_k}: {'there is' if others == 1 else 'there are'} only {others} other "
+            f"point{'' if others == 1 else 's'}",)
+
+
+def _points(scene: Scene) -> Array:
+    assert scene.points is not None
+    return scene.points

@@ -1,0 +1,74 @@
+"""The points of a cloud with what normals they have, and the balls around them, as rays need them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jaart.core import cloud, orient
+from jaart.core.balls import Cloud
+from jaart.core.chosen import Chosen
+from jaart.core.kernels.gather import Grid
+from jaart.core.meaning import needs_normals
+from jaart.core.scene import Array, Scene, frozen
+from jaart.core.settings import Settings
+from jaart.core.tree import ball_tree
+
+#: A grid over the points has at most so many cells along an axis.
+MOST_CELLS = 1 << 20
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """A cloud's points (N, 3) in its own coordinates and normals (N, 3): its own, estimated, or 0 where nobody asked.
+
+    notes: what a person should know of the normals.
+    """
+
+    points: Array
+    normal: Array
+    notes: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+
+def points_of(scene: Scene, settings: Settings, values: Chosen) -> Points:
+    """The points with the normals that the settings need."""
+    assert scene.points is not None
+    if scene.normals is not None:
+        return Points(scene.points, scene.normals)
+    if not needs_normals(scene, settings, values):
+        return Points(scene.points, scene.once("no_normals", (), lambda: frozen(np.zeros(scene.points.shape))))
+    made = orient.normals_of(scene, settings.orient)
+    return Points(scene.points, made.normal, made.notes)
+
+
+def cloud_of(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
+    """Points in a grid, balls that cover them and a tree over these, for a neighbourhood."""
+    points, found = cloud.local_points(scene), points_of(scene, settings, values)
+    kept = cloud.cover(scene, settings.ball_k)
+    centres, radii = np.array(points[kept]), np.array(cloud.ball_radii(scene, settings.ball_k)[kept])
+    reach = radii + values.radius if values.neighbourhood == "ball" else _reach(scene, settings.k, kept, radii)
+    return Cloud(_grid(points, found.normal, float(np.median(reach))), centres, radii, reach,
+                 ball_tree(centres, radii), cloud.offset(scene))
+
+
+def _reach(scene: Scene, k: int, kept: NDArray[np.int64], radii: Array) -> Array:
+    """How far the k nearest of any point in a ball may be from its centre: no more than its own k-th and 2ρ."""
+    distance, _ = cloud.nearest_others(cloud.local_points(scene), max(k - 1, 1), cloud.kd_tree(scene))
+    farthest: Array = (distance[kept, -1] if distance.shape[1] else np.zeros(len(kept))) + 2 * radii
+    return farthest * (1 + 1e-12)
+
+
+def _grid(points: Array, normals: Array, edge: float) -> Grid:
+    """The points sorted by the cells of a grid, about as wide as a neighbourhood."""
+    low, size = points.min(axis=0), np.ptp(points, axis=0)
+    edge = max(edge, float(size.max()) / MOST_CELLS) or 1.0
+    shape = (size / edge).astype(np.int64) + 1
+    cell = np.minimum(((points - low) / edge).astype(np.int64), shape - 1)
+    keys = (cell[:, 0] * shape[1] + cell[:, 1]) * shape[2] + cell[:, 2]
+    order = np.argsort(keys, kind="stable")
+    return Grid(np.array(low), edge, shape, keys[order], points[order], normals[order], order)

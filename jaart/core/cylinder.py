@@ -1,0 +1,77 @@
+"""Rays through a lattice by the mean of the surfels in a cylinder around each [Schaufler & Jensen 2000; A §2]."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jaart.core.cell_table import cell_table
+from jaart.core.chosen import HALF_DIAGONAL, Chosen
+from jaart.core.kernels import cylinder
+from jaart.core.kernels.records import LOG_WIDTH, Cells, Out, Plan, Sites
+from jaart.core.scene import Array
+from jaart.core.surfels import Surfels
+from jaart.core.tiles import Pixels, columns_for
+from jaart.core.tracers import NO_LOG
+
+#: Room for rounding in a neighbourhood's radius, in cells.
+_ROUNDING = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class CylinderTracer:
+    """A lattice of surfels, each a disc of radius h, which is the cylinder's radius too.
+
+    cells: the neighbourhoods, of `reach(radius)` or more; plan: how the energies along a ray are sampled; radius:
+    of discs and cylinder, in cells.
+    """
+
+    cells: Cells
+    plan: Plan
+    radius: float
+
+    @property
+    def sites(self) -> Sites:
+        """The cells with the surfels near each."""
+        return self.cells.sites
+
+    def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
+              any_hit: bool = False) -> int:
+        """Trace some rays into their rows of the columns; see `Tracer`. The first hit costs no more than any."""
+        return int(cylinder.cylinder_rays(self.cells, self.radius, origins, directions, pixels, out, log))
+
+
+def reach(radius: float) -> float:
+    """How far from a cell's centre a surfel may be that counts for a disc hit in the cell.
+
+    A disc that is hit there is at most a radius from the hit; a surfel of the cylinder at most √2 radii.
+    """
+    return math.sqrt(2.0) * radius + HALF_DIAGONAL + _ROUNDING
+
+
+def with_reach(values: Chosen) -> Chosen:
+    """The values with the neighbourhood that a cylinder needs."""
+    return replace(values, neighbourhood="cell_ball", radius=reach(values.h))
+
+
+def cylinder_tracer(values: Chosen, plan: Plan, cells: Callable[[Chosen], Cells]) -> CylinderTracer:
+    """What rays are sent through; cells: makes the table of a neighbourhood."""
+    return CylinderTracer(cells(with_reach(values)), plan, values.h)
+
+
+@functools.cache
+def warm_up() -> None:
+    """Run the kernels once, so that none compiles later."""
+    found = Surfels(np.array([[1, 1, 1]], np.int32), np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]))
+    sites = cell_table(found, (3, 3, 3), _SMALL, 1)
+    cylinder.cylinder_rays(sites, 1.0, np.array([[1.5, 1.5, 9.0]]), np.array([[0.0, 0.0, -1.0]]), np.zeros(1, np.int64),
+                           columns_for(1), np.empty((1, LOG_WIDTH)))
+    cylinder.write_shares(sites.sites, (1, 1, 1), (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), 1.0, np.empty(2))
+
+
+_SMALL = Chosen(method="cylinder", search="iterate", weight="gaussian", normal="surfel", neighbourhood="cell_ball",
+                h=1.0, radius=reach(1.0), trust=1.0, off_centre=math.inf, nearest=math.inf, level=0.0, step=1.0)

@@ -1,0 +1,1 @@
+"""The parameters by subject; settings.py makes one record of them."""

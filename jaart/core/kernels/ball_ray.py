@@ -1,0 +1,185 @@
+"""A ray through a cloud: a tree walked along it, the balls it pierces in order, a search in each [A §5].
+
+All that waits its turn lies in one heap, the nearest first: nodes of the tree and balls by where the ray enters
+them, then what the balls promise: the ray's hit with the plane or polynomial kept at their centres. So the first
+promise that comes up is the first hit, up to what two sheets closer than a quarter of h would hide.
+"""
+
+from __future__ import annotations
+
+from math import inf, nan, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jaart.core.kernels import records as r
+from jaart.core.kernels.call import search_from
+from jaart.core.kernels.guess import meets
+from jaart.core.kernels.heap import pop, push
+from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.log import end_log
+from jaart.core.kernels.ray import added, has_hit, is_bad, no_hit, visiting, write_end
+from jaart.core.kernels.records import Array, Out, Plan, RayEnd, Sites, Start, Vector
+from jaart.core.kernels.tree import Tree, span
+from jaart.core.kernels.unowned import unowned, unowned_sites
+from jaart.core.kernels.vectors import along, dot
+
+Ints = NDArray[np.int64]
+#: Promises closer to a hit than this, in h, are of the same sheet.
+_SAME_SHEET = 0.25
+#: RayEnd.missing: every ball needed is gathered, or the heap has no room.
+NOTHING, ROOM = -1, -2
+
+
+#: A node adds fewer entries than this to the heap.
+_LEAF_ROOM = 64
+
+
+class Balls(NamedTuple):
+    """A cloud as rays pierce it.
+
+    sites: the gathered balls, in the order they were asked for; slot: (N,) place of each ball in sites; count: of
+    the balls gathered, slots from there on are not yet there; centres, radii: (N, 3), (N,); tree: over the balls;
+    guesses: (count, GUESS_WIDTH) what is kept at their centres; stretches: 1 where a ball is searched from side to
+    side, 0 where a search starts from its promise; any_hit: 1 where the first found will do.
+    """
+
+    sites: Sites
+    slot: Ints
+    count: int
+    centres: Array
+    radii: Array
+    tree: Tree
+    guesses: Array
+    stretches: int
+    any_hit: int
+
+
+@kernel(STRICT)
+def chord(balls: Balls, ball: int, o: Vector, d: Vector) -> tuple[float, float, float]:
+    """Distance t of the ray's foot point on a ball's centre, half the chord (NaN for none), and priority [A 12].
+
+    γ = (ρ - distance of ray and centre)/ρ.
+    """
+    c = (balls.centres[ball, 0] - o[0], balls.centres[ball, 1] - o[1], balls.centres[ball, 2] - o[2])
+    foot, radius = dot(c, d), balls.radii[ball]
+    aside = along(c, d, -foot)
+    distance = sqrt(dot(aside, aside))
+    half = sqrt((radius - distance) * (radius + distance)) if distance <= radius else nan
+    return foot, half, (radius - distance) / radius if radius > 0.0 else 0.0
+
+
+@kernel(STRICT)
+def push_children(balls: Balls, node: int, o: Vector, d: Vector, inverse: Vector, keys: Array, items: Ints,
+                  size: int) -> int:
+    """Add what a node holds and the ray meets: its two children, or its balls; returns the heap's size."""
+    tree = balls.tree
+    if tree.size[node] == 0:
+        for i in range(2):
+            child = node + 1 if i == 0 else tree.first[node]
+            enter, leave = span(tree.low, tree.high, child, o, inverse)
+            if enter <= leave and leave > 0.0:
+                size = push(keys, items, size, -2.0 if balls.any_hit == 1 else max(enter, 0.0), -1 - child)
+        return size
+    for at in range(tree.first[node], tree.first[node] + tree.size[node]):
+        ball = tree.order[at]
+        foot, half, priority = chord(balls, ball, o, d)
+        if foot + half > 0.0:
+            size = push(keys, items, size, -priority if balls.any_hit == 1 else max(foot - half, 0.0), ball)
+    return size
+
+
+@kernel(STRICT)
+def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, number: int) -> Start:
+    """Where the search of a ball begins: at its promise, NaN for none, or at its near side for a stretch.
+
+    The base is the ray's foot point on the centre; s counts from there.
+    """
+    foot, half, _ = chord(balls, ball, o, d)
+    slot = balls.slot[ball]
+    c = (balls.centres[ball, 0], balls.centres[ball, 1], balls.centres[ball, 2])
+    base = along((o[0] - c[0], o[1] - c[1], o[2] - c[2]), d, foot)
+    low, high = max(-half, -foot), half
+    s = low if balls.stretches == 1 else meets(balls.guesses[slot], base, d, low, high, plan.rule.h)
+    return Start((slot, np.int64(0), np.int64(0)), base, foot, s, low, high, nan, number)
+
+
+@kernel(STRICT)
+def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, work: Array, fit: Array, keys: Array,
+                   items: Ints) -> RayEnd:
+    """The first hit of a ray, or how its last start ended; `missing` names a ball to gather first.
+
+    o, d: origin and unit direction in the cloud's local frame; keys, items: room for the heap.
+    """
+    if is_bad(o, d):
+        return no_hit(r.BAD_RAY)
+    inverse = (1.0 / d[0], 1.0 / d[1], 1.0 / d[2])
+    count, room = balls.centres.shape[0], keys.shape[0] - _LEAF_ROOM
+    end, best, visited, number = no_hit(r.BACKGROUND), no_hit(r.BACKGROUND), 0, 0
+    found, limit, slack = False, inf, _SAME_SHEET * plan.rule.h
+    enter, leave = span(balls.tree.low, balls.tree.high, 0, o, inverse)
+    size = push(keys, items, 0, -2.0, -1) if enter <= leave and leave > 0.0 else 0
+    while size > 0 and keys[0] < limit:
+        if size > room:
+            return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, 0, ROOM)
+        size = pop(keys, items, size)
+        item = items[size]
+        if item < 0:
+            size = push_children(balls, -1 - item, o, d, inverse, keys, items, size)
+            continue
+        ball = item if item < count else item - count
+        if balls.slot[ball] < 0 or balls.slot[ball] >= balls.count:
+            return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, 0, ball)
+        start = start_in(balls, plan, ball, o, d, number)
+        if item < count:
+            visited += 1
+            if balls.stretches == 0 and balls.any_hit == 0:
+                if start.s == start.s and start.t + start.s > 0.0:
+                    size = push(keys, items, size, start.t + start.s, count + ball)
+                continue
+        if start.s != start.s:
+            continue
+        one = search_from(plan.search, balls.sites, plan.rule, plan.how, plan.bounds, d, start, rows, end.rows, work, fit)
+        number += 1
+        if one.steps > 0 or one.state != r.BACKGROUND:
+            end = added(end, one)
+            end_log(rows, end.rows, one.state)
+        if has_hit(one.state) and (not found or one.t < best.t):
+            found, best, limit = True, end, one.t if balls.stretches == 1 else one.t - slack
+            if balls.any_hit == 1:
+                break
+    return visiting(end, visited) if not found else finished(best, end, visited)
+
+
+@kernel(STRICT)
+def finished(best: RayEnd, last: RayEnd, visited: int) -> RayEnd:
+    """The best hit with the work that all starts took."""
+    return RayEnd(best.state, best.t, best.point, best.n, best.energy, best.off, best.iterations, last.evaluations,
+                  last.used, visited, last.lowered, last.rows, NOTHING)
+
+
+@kernel(STRICT)
+def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array, pixels: Ints, out: Out, rows: Array,
+                    missing: Ints, work: Array, fit: Array, keys: Array, items: Ints) -> int:
+    """Trace some of the rays and write each that ended into its row of the columns; returns the rows of the log.
+
+    origins, directions: (R, 3) in the local frame; pixels: rows to trace; missing: for each of them NOTHING, the ball
+    to gather, or ROOM; the others as of `trace_ball_ray`.
+    """
+    sites, log = unowned_sites(balls.sites), unowned(rows)
+    tree = Tree(unowned(balls.tree.low), unowned(balls.tree.high), unowned(balls.tree.first),
+                unowned(balls.tree.size), unowned(balls.tree.order))
+    balls = Balls(sites, unowned(balls.slot), balls.count, unowned(balls.centres), unowned(balls.radii), tree,
+                  unowned(balls.guesses), balls.stretches, balls.any_hit)
+    scratch, fitted, waiting, numbers, written = unowned(work), unowned(fit), unowned(keys), unowned(items), 0
+    for i in range(pixels.shape[0]):
+        to = pixels[i]
+        o = (origins[to, 0], origins[to, 1], origins[to, 2])
+        d = (directions[to, 0], directions[to, 1], directions[to, 2])
+        end = trace_ball_ray(balls, plan, o, d, log, scratch, fitted, waiting, numbers)
+        missing[i] = end.missing
+        if end.missing == NOTHING:
+            write_end(out, to, end)
+            written = end.rows
+    return written

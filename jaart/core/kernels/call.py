@@ -1,0 +1,82 @@
+"""Calls of kernels by their address, so that a search is compiled once for every surface it may search.
+
+A function that is passed as an argument would be compiled anew for each other function, in every process; an
+address is only a number. The caller's and the callee's types must agree: `address_of` sees to that.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from threading import Lock
+from typing import Any
+
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from jaart.core.kernels import records as r
+
+_VECTOR = types.UniTuple(types.float64, 3)
+_CELL = types.UniTuple(types.int64, 3)
+_FLOATS = types.Array(types.float64, 1, "C")
+_ROWS = types.Array(types.float64, 2, "C")
+_NEAR = types.NamedTuple((_FLOATS, types.uint64, types.uint64), r.Near)
+_RULE = types.NamedTuple((types.int64, types.int64, types.float64, types.float64, types.int64, types.int64,
+                          types.int64, types.float64), r.Rule)
+_VALUE = types.NamedTuple((types.int64, types.float64, _VECTOR, _VECTOR, types.float64, types.float64, _VECTOR,
+                           types.int64), r.Value)
+_SITES = types.NamedTuple((_CELL, _ROWS, types.Array(types.int64, 1, "C"), types.Array(types.int32, 1, "C"),
+                           _FLOATS), r.Sites)
+_SEARCH = types.NamedTuple((types.int64, types.int64, types.float64, types.int64, types.int64, types.float64,
+                            types.int64, types.float64, types.int64, types.int64, types.float64, types.int64), r.Search)
+_BOUNDS = types.NamedUniTuple(types.float64, 5, r.Bounds)
+_START = types.NamedTuple((_CELL, _VECTOR) + (types.float64,) * 5 + (types.int64,), r.Start)
+_END = types.NamedTuple((types.int64, types.float64, _VECTOR, _VECTOR, types.float64, types.float64) +
+                        (types.int64,) * 4 + (types.float64,), r.End)
+
+#: evaluate(near, x, rule, want, work, fit) -> Value.
+EVALUATE = _VALUE(_NEAR, _VECTOR, _RULE, types.int64, _FLOATS, _FLOATS)
+#: search(sites, rule, how, bounds, direction, start, rows, row, work, fit) -> End.
+SEARCH = _END(_SITES, _RULE, _SEARCH, _BOUNDS, _VECTOR, _START, _ROWS, types.int64, _FLOATS, _FLOATS)
+
+_LOCK = Lock()
+
+
+def _caller(signature: Any) -> Any:
+    """The lowering of a call through an address with a fixed signature."""
+    def generate(context: Any, builder: Any, typed: Any, arguments: Any) -> Any:
+        kind = context.call_conv.get_function_type(signature.return_type, signature.args)
+        pointer = builder.inttoptr(arguments[0], kind.as_pointer())
+        status, result = context.call_conv.call_function(builder, pointer, signature.return_type, signature.args,
+                                                         arguments[1:])
+        with cgutils.if_unlikely(builder, status.is_error):
+            context.call_conv.return_status_propagate(builder, status)
+        return result
+
+    return generate
+
+
+@intrinsic
+def evaluate_at(typing_context: Any, address: Any, near: Any, x: Any, rule: Any, want: Any, work: Any,
+                fit: Any) -> Any:
+    """Evaluate the surface whose evaluator stands at an address."""
+    return EVALUATE.return_type(types.int64, *EVALUATE.args), _caller(EVALUATE)
+
+
+@intrinsic
+def search_from(typing_context: Any, address: Any, sites: Any, rule: Any, how: Any, bounds: Any, d: Any, start: Any,
+                rows: Any, row: Any, work: Any, fit: Any) -> Any:
+    """Run the search that stands at an address from a start on a ray."""
+    return SEARCH.return_type(types.int64, *SEARCH.args), _caller(SEARCH)
+
+
+@cache
+def address_of(function: Any, signature: Any) -> int:
+    """Where the machine code of a kernel begins, compiled or loaded for exactly these types."""
+    with _LOCK:
+        function.compile(signature.args)
+        compiled = function.overloads[signature.args]
+        assert compiled.signature.return_type == signature.return_type, (function, compiled.signature)
+        address: int = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+        return address
+

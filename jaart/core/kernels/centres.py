@@ -1,0 +1,47 @@
+"""The plane or polynomial at the centre of a cell or a ball alone, without iteration [A §6]."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from jaart.core.kernels import records as r
+from jaart.core.kernels.call import evaluate_at
+from jaart.core.kernels.guess import GUESS_WIDTH, meets, write_guess
+from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.judge import judged
+from jaart.core.kernels.log import write_step
+from jaart.core.kernels.near import surfels_near
+from jaart.core.kernels.place import in_scene, located
+from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, Start, Vector
+from jaart.core.kernels.shown import fitted_normal
+from jaart.core.kernels.stretch import fewer_degrees, nothing_found
+from jaart.core.kernels.vectors import along, length
+
+
+@kernel(STRICT)
+def centre_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector, start: Start, rows: Array, row: int,
+                  work: Array, fit: Array) -> End:
+    """The ray's hit with what the surface is seen as from the centre of the start's place; as `step_search` else.
+
+    In a lattice the first hit ahead of the start within the trust region; in a ball its promise, already met.
+    """
+    near, centre = surfels_near(sites, start.cell), (0.0, 0.0, 0.0)
+    size = np.int64(near.size)
+    v = evaluate_at(how.evaluate, near, centre, rule, r.VALUE_ONLY, work, fit)
+    lowered = fewer_degrees(v, rule)
+    if v.state != r.CONTINUE:
+        return nothing_found(v.state, 0, 1, size, lowered, v.f)
+    kept = np.empty(GUESS_WIDTH)
+    write_guess(kept, v, fit)
+    low = start.low if sites.shape[0] == 0 else max(0.0, -start.t)
+    s = meets(kept, start.base, d, low, start.high, rule.h)
+    x = along(start.base, d, s)
+    if rows.shape[0] > 0:
+        write_step(rows, row, sites, start, 0.0, start.cell, centre, v, s)
+    if s != s or not located(sites, start, d, s)[2]:
+        return nothing_found(r.LEFT_TRUST, 1, 1, size, lowered, v.f)
+    state = judged(near, centre, v, bounds, work)
+    if state != r.CONVERGED:
+        return nothing_found(state, 1, 1, size, lowered, v.f)
+    n = fitted_normal(v, x, rule, fit)
+    return End(state, start.t + s, in_scene(sites, start.cell, x), n, v.f, length(v.off), 1, 1, size, lowered, v.f)

@@ -1,0 +1,55 @@
+"""The plane or polynomial at the centre of a cell or ball: kept, it says where a ray should begin [A §5, 6]."""
+
+from __future__ import annotations
+
+from math import nan
+
+import numpy as np
+
+from jaart.core.kernels import records as r
+from jaart.core.kernels.call import evaluate_at
+from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.near import surfels_near
+from jaart.core.kernels.polynomial import line_polynomial
+from jaart.core.kernels.records import FIT_SIZE, Array, Plan, Sites, Value, Vector
+from jaart.core.kernels.roots import first_root_above
+from jaart.core.kernels.vectors import dot, frame
+
+#: A row of guesses: state, normal, f, degree, then the polynomial's coefficients.
+STATE, N_X, N_Y, N_Z, HEIGHT, DEGREE, FIT = range(7)
+GUESS_WIDTH = FIT + FIT_SIZE
+
+
+@kernel(STRICT)
+def write_guess(row: Array, v: Value, fit: Array) -> None:
+    """Keep the surface at a centre in a row."""
+    row[STATE], row[HEIGHT], row[DEGREE] = v.state, v.f, v.degree
+    row[N_X], row[N_Y], row[N_Z] = v.n
+    for i in range(FIT_SIZE):
+        row[FIT + i] = fit[i]
+
+
+@kernel(STRICT)
+def fit_centres(sites: Sites, plan: Plan, begin: int, guesses: Array, work: Array, fit: Array) -> None:
+    """Evaluate the surface at the centres of the balls begin, begin + 1, ... and keep it in guesses (B, GUESS_WIDTH)."""
+    for ball in range(begin, begin + guesses.shape[0]):
+        near = surfels_near(sites, (ball, np.int64(0), np.int64(0)))
+        v = evaluate_at(plan.how.evaluate, near, (0.0, 0.0, 0.0), plan.rule, r.VALUE_ONLY, work, fit)
+        write_guess(guesses[ball - begin], v, fit)
+
+
+@kernel(STRICT)
+def meets(row: Array, base: Vector, d: Vector, low: float, high: float, h: float) -> float:
+    """The first s in low … high at which base + s·d meets what a row keeps; NaN for none.
+
+    base: relative to the centre; h: the unit of the polynomial.
+    """
+    if int(row[STATE]) != r.CONTINUE:
+        return nan
+    n = (row[N_X], row[N_Y], row[N_Z])
+    if row[DEGREE] == 0.0:
+        s = (row[HEIGHT] - dot(n, base)) / dot(n, d)
+        return s if low <= s <= high else nan
+    e1, e2 = frame(n)
+    at = (dot(base, e1) / h, dot(base, e2) / h, dot(base, n) / h)
+    return first_root_above(line_polynomial(row[FIT:], at, (dot(d, e1), dot(d, e2), dot(d, n))), low / h, high / h) * h

@@ -1,0 +1,71 @@
+"""The guarded search: the first hit on a stretch, never a loop.
+
+Steps of at most 0.8 h with f and its slope; a change of sign is a bracket; so is an extremum between two equal
+signs, where the slopes at both ends point to 0 and the tangents meet beyond it. At a silhouette the iteration of
+Adamson & Alexa is Newton's method for t² + c² = 0, which never ends; here it is an extremum that stays on its side.
+"""
+
+from __future__ import annotations
+
+from math import ceil, nan
+
+from jaart.core.kernels import records as r
+from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.near import surfels_near
+from jaart.core.kernels.probe import F, F_SLOPE, Look, look, opposite, root_between
+from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, Start, Vector
+from jaart.core.kernels.stretch import fewer, hit_at, nothing_found, through
+
+#: Length of the steps, in h.
+_STEP = 0.8
+#: An extremum is looked for until its bracket is this short, in h.
+_EXTREMUM = 1e-9
+
+
+@kernel(STRICT)
+def may_dip(a: Look, b: Look) -> bool:
+    """Whether f may cross 0 and come back between two looks of the same sign: its tangents there meet beyond 0."""
+    if not (a.f * b.f > 0.0 and a.f * a.slope < 0.0 and b.f * b.slope > 0.0):
+        return False
+    meet = (b.f - a.f + a.slope * a.s - b.slope * b.s) / (a.slope - b.slope)
+    return opposite(a.f, a.f + a.slope * (meet - a.s))
+
+
+@kernel(STRICT)
+def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector, start: Start, rows: Array, row: int,
+                work: Array, fit: Array) -> End:
+    """The first surface within a stretch; arguments as of `step_search`."""
+    size = int(surfels_near(sites, start.cell).size)
+    count = max(int(ceil((start.high - start.low) / (_STEP * rule.h))), 1)
+    state, looks, evaluations, lowered = r.BACKGROUND, 0, 0, 0
+    a = look(F_SLOPE, sites, rule, how, d, start, start.low, rows, row, work, fit)
+    looks, evaluations, lowered = 1, a.evaluations, fewer(a, rule)
+    if a.value.state == r.CONTINUE and through(start.before, a.f, a.value.n, d):
+        end = hit_at(r.FLOOR, sites, rule, how, bounds, d, start, a.s, a.value, a.f, looks, evaluations,
+                     evaluations * size, lowered, work, fit)
+        if end.state == r.FLOOR:
+            return end
+        state = end.state
+    for i in range(1, count + 1):
+        s = start.low + (start.high - start.low) * (i / count)
+        b = look(F_SLOPE, sites, rule, how, d, start, s, rows, row + looks, work, fit)
+        looks, evaluations, lowered = looks + 1, evaluations + b.evaluations, lowered + fewer(b, rule)
+        inner = b
+        if may_dip(a, b):
+            inner, more, spent = root_between(F_SLOPE, sites, rule, how, d, start, a, b, _EXTREMUM * rule.h, a.f, rows,
+                                              row + looks, work, fit)
+            looks, evaluations = looks + more, evaluations + spent
+        if opposite(a.f, inner.f):
+            hit, more, spent = root_between(F, sites, rule, how, d, start, a, inner, how.arrived, nan, rows, row + looks,
+                                            work, fit)
+            looks, evaluations = looks + more, evaluations + spent
+            if through(a.f, inner.f, hit.value.n, d):
+                end = hit_at(r.CONVERGED, sites, rule, how, bounds, d, start, hit.s, hit.value, hit.f, looks, evaluations,
+                             evaluations * size, lowered, work, fit)
+                if end.state == r.CONVERGED:
+                    return end
+                state = end.state
+        if b.value.state != r.CONTINUE:
+            state = b.value.state
+        a = b
+    return nothing_found(state, looks, evaluations, evaluations * size, lowered, a.f)

@@ -1,0 +1,63 @@
+"""What a scene is once rays can be sent through it: each kind traces a list of rays into columns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from jaart.core.kernels import ray
+from jaart.core.kernels.records import FIT_SIZE, LOG_WIDTH, Cells, Out, Plan, Sites
+from jaart.core.scene import Array
+from jaart.core.tiles import Pixels
+
+#: Scratch for each surfel that may be near a point: its weight, its place in the local frame, its row of a fit.
+SCRATCH_A_SURFEL = 24
+#: A log without room: nothing is written down.
+NO_LOG = np.empty((0, LOG_WIDTH))
+
+
+class Tracer(Protocol):
+    """A scene that rays can be sent through."""
+
+    plan: Plan
+
+    @property
+    def sites(self) -> Sites:
+        """The places with the surfels near each."""
+
+    def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
+              any_hit: bool = False) -> int:
+        """Trace some rays (R, 3) into their rows of the columns; returns the rows written to the log.
+
+        log: (L, LOG_WIDTH) for the steps of a single ray; any_hit: any hit will do, not only the first.
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class LatticeTracer:
+    """A lattice of surfels.
+
+    cells: their neighbourhoods; plan: how they are searched.
+    """
+
+    cells: Cells
+    plan: Plan
+
+    @property
+    def sites(self) -> Sites:
+        """The cells with the surfels near each."""
+        return self.cells.sites
+
+    def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
+              any_hit: bool = False) -> int:
+        """Trace some rays into their rows of the columns; see `Tracer`."""
+        work, fit = scratch(self.cells.sites)
+        return int(ray.trace_rays(self.cells, self.plan, origins, directions, pixels, out, log, work, fit))
+
+
+def scratch(sites: Sites) -> tuple[Array, Array]:
+    """Room for the weights and fits of the place with the most surfels, for one thread."""
+    most = int(np.diff(sites.first).max(initial=0))
+    return np.empty(SCRATCH_A_SURFEL * max(most, 1)), np.zeros(FIT_SIZE)
