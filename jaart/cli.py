@@ -15,24 +15,25 @@ import typer
 
 from jaart import cli_arguments as typed
 from jaart import cli_files as files
+from jaart import cli_isosurface as meshes
 from jaart import cli_report as report
+from jaart.cli_options import (
+    DEFAULT_PRESET,
+    DEFAULT_SIZE,
+    CameraTexts,
+    Frame,
+    OutputFile,
+    PresetName,
+    SceneName,
+    SetTexts,
+    SizeText,
+    Threads,
+)
 from jaart.core.errors import Cancelled, JaartError, SettingsError
 
 if TYPE_CHECKING:
     from jaart.core.scene import Scene
-
-#: Pixels of a picture when nobody says.
-DEFAULT_SIZE = "512x512"
-
-SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A file, or a built-in scene: splash, standard.")]
-SizeText = Annotated[str, typer.Option("--size", metavar="WxH", help="Pixels of the picture.")]
-CameraTexts = Annotated[list[str] | None, typer.Option("--camera", metavar="K=V ...", help=(
-    "eye=x,y,z target=x,y,z up=x,y,z fov=degrees (across the longer side) or ortho=width; "
-    "in cells; by default the whole scene in view."))]
-PresetName = Annotated[str, typer.Option("--preset", metavar="NAME", help="Settings to start from: best, thesis.")]
-SetTexts = Annotated[list[str] | None, typer.Option("--set", metavar="K=V ...", help="Single settings on top.")]
-Frame = Annotated[int | None, typer.Option("--frame", min=0, metavar="N", help="Which of a series, from 0.")]
-OutputFile = Annotated[Path | None, typer.Option("--output", "-o", metavar="FILE", help="The picture, .png.")]
+    from jaart.core.settings import Settings
 
 #: What the parser raises for wrong usage; it has no public name of its own.
 _USAGE: Any = typer.BadParameter.__mro__[1]
@@ -81,15 +82,15 @@ def _start(version: Annotated[bool, typer.Option("--version", help="Say the vers
 def gui(scene: SceneName = "splash",
         pick: Annotated[str | None, typer.Option(metavar="X,Y", help="Pick this pixel of the picture.")] = None,
         screenshot: Annotated[Path | None, typer.Option(metavar="FILE", help="Save the window here and end.")] = None,
-        frame: Frame = None, camera: CameraTexts = None, preset: PresetName = "best", set_: SetTexts = None) -> int:
+        frame: Frame = None, camera: CameraTexts = None, preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None) -> int:
     """Open the window."""
     pixel = None if pick is None else typed.pixel(pick, "--pick")
     settings = typed.settings(preset, set_ or [])
     if screenshot is not None:
         typed.output(screenshot, "--screenshot", ".png")
     view = None
-    if camera or set_:
-        loaded = _load(scene, frame, set_)
+    if camera or set_ or preset != DEFAULT_PRESET:
+        loaded, settings = _open(scene, frame, settings, preset, set_)
         view = typed.camera(camera, loaded, settings) if camera else None
 
     from jaart.gui.app import run as open_window
@@ -112,15 +113,24 @@ def info(scene: SceneName, frame: Frame = None,
 
 
 @app.command()
+def settings(name: Annotated[str | None, typer.Argument(metavar="NAME", help=(
+        "A setting, a group of them, or a preset; everything when left out."))] = None) -> None:
+    """List what --set takes: default, range, unit and meaning of each setting, and the presets."""
+    from jaart.cli_settings import text
+
+    print(text(name))
+
+
+@app.command()
 def render(
-        scene: SceneName, size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None, preset: PresetName = "best",
+        scene: SceneName, size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None, preset: PresetName = DEFAULT_PRESET,
         set_: SetTexts = None, frame: Frame = None,
         map_: Annotated[str, typer.Option("--map", metavar="NAME", help=(
             "What colours mean: shaded, iterations, evaluations, off_centre, depth, status, distance_error, "
             "normal_error."))] = "shaded",
         rays: Annotated[Path | None, typer.Option(metavar="FILE", help=(
             "Trace the origins and directions (R, 3) of this .npz instead of a camera's; needs --hits."))] = None,
-        threads: Annotated[int | None, typer.Option(min=1, metavar="N", help="By default one a core.")] = None,
+        threads: Threads = None,
         output: OutputFile = None,
         hits: Annotated[Path | None, typer.Option(metavar="FILE", help="Every ray's hit as arrays, .npz.")] = None,
         ) -> None:
@@ -138,22 +148,30 @@ def render(
         typed.output(output, "--output", ".png")
     if hits is not None:
         typed.output(hits, "--hits", ".npz")
-    shape, settings = typed.size(size), typed.settings(preset, set_ or [])
-    loaded = _load(scene, frame, set_)
+    shape, chosen = typed.size(size), typed.settings(preset, set_ or [])
+    loaded, chosen = _open(scene, frame, chosen, preset, set_)
     _check_map(map_, loaded)
     listed = None if rays is None else typed.rays(rays)
-    view = None if rays is not None else typed.camera(camera or [], loaded, settings, shape)
+    view = None if rays is not None else typed.camera(camera or [], loaded, chosen, shape)
 
+    from jaart.core.picture import finish
     from jaart.core.quality import quality
     from jaart.core.render import render as trace_rays
 
     report.say_compiling()
-    with _interruptible() as cancel, report.progress_bar() as progress:
-        found = trace_rays(loaded, settings, view, shape, rays=listed, threads=threads, progress=progress,
-                           cancel=cancel)
-    errors = quality(found, loaded)
-    print(report.hits_line(found, errors))
-    files.write_render(found, errors, map_, output, hits)
+    with _interruptible() as cancel:
+        with report.progress_bar() as progress:
+            found = trace_rays(loaded, chosen, view, shape, rays=listed, threads=threads, progress=progress,
+                               cancel=cancel)
+        errors = quality(found, loaded) if loaded.model is not None or map_.endswith("_error") else None
+        print(report.hits_line(found, loaded, errors))
+        report.say_notes(loaded, chosen)
+        if output is not None:
+            with report.progress_bar() as progress:
+                colours = finish(found, loaded, map_, errors, cancel=cancel, progress=progress, threads=threads)
+            files.write_picture(colours, found, loaded, errors, map_, output)
+    if hits is not None:
+        files.write_hits(found, hits)
 
 
 @app.command()
@@ -165,30 +183,73 @@ def trace(
         size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None,
         origin: Annotated[str | None, typer.Option(metavar="x,y,z", help="Where the ray begins, in cells.")] = None,
         direction: Annotated[str | None, typer.Option(metavar="x,y,z", help="Where it goes, of any length.")] = None,
-        preset: PresetName = "best", set_: SetTexts = None, frame: Frame = None) -> None:
+        preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None, frame: Frame = None) -> None:
     """Follow one ray and write every step it took."""
     at, ray = _which_ray(pixel, origin, direction)
     typed.output(output, "--output", ".json", ".csv", ".svg")
-    shape, settings = typed.size(size), typed.settings(preset, set_ or [])
+    shape, chosen = typed.size(size), typed.settings(preset, set_ or [])
     if at is None and size != DEFAULT_SIZE:
         print("jaart: note: --size has no meaning with --origin and --direction", file=sys.stderr)
     if at is not None:
         typed.check_pixel(at, shape)
     elif camera:
         raise typed.usage("--camera", "has no meaning with --origin and --direction")
-    loaded, up = _load(scene, frame, set_), (0.0, 0.0, 1.0)
+    (loaded, chosen), up = _open(scene, frame, chosen, preset, set_), (0.0, 0.0, 1.0)
 
     from jaart.core.trace import trace as follow
 
     if at is not None:
-        view = typed.camera(camera or [], loaded, settings, shape)
+        view = typed.camera(camera or [], loaded, chosen, shape)
         ray, up = typed.pixel_ray(view, shape, at), view.up or up
     assert ray is not None
     report.say_compiling()
-    followed = follow(loaded, settings, *ray, pixel=at)
+    followed = follow(loaded, chosen, *ray, pixel=at)
+    report.say_notes(loaded, chosen)
     files.write_trace(followed, output, up)
     print(report.trace_line(followed))
     print(f"wrote {output}")
+
+
+@app.command()
+def statistics(
+        scene: SceneName,
+        output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="Numbers as .csv, plots as .svg.")],
+        size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None, preset: PresetName = DEFAULT_PRESET,
+        set_: SetTexts = None, frame: Frame = None, threads: Threads = None) -> None:
+    """Count how the rays of a picture ended, and what they took.
+
+    End states, steps, cells or balls, surfels, times, and the errors where the exact surface is known.
+    """
+    typed.output(output, "--output", ".csv", ".svg")
+    shape, chosen = typed.size(size), typed.settings(preset, set_ or [])
+    loaded, chosen = _open(scene, frame, chosen, preset, set_)
+    view = typed.camera(camera or [], loaded, chosen, shape)
+
+    from jaart.core.quality import quality
+    from jaart.core.render import render as trace_rays
+
+    report.say_compiling()
+    with _interruptible() as cancel, report.progress_bar() as progress:
+        found = trace_rays(loaded, chosen, view, shape, threads=threads, progress=progress, cancel=cancel)
+    errors = quality(found, loaded)
+    print(report.hits_line(found, loaded, errors))
+    report.say_notes(loaded, chosen)
+    files.write_statistics(found, errors, output)
+
+
+@app.command()
+def isosurface(
+        scene: SceneName, energy: meshes.EnergyName, output: meshes.MeshFile, level: meshes.LevelText = None,
+        subdivide: meshes.Divisions = None, direction: meshes.DirectionText = None, camera: CameraTexts = None,
+        preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None, frame: Frame = None) -> None:
+    """Write the surface where an energy has a level, as a mesh with normals."""
+    meshes.check_output(output)
+    chosen = meshes.asked(energy, level, subdivide, preset, set_ or [])
+    loaded, chosen = _open(scene, frame, chosen, preset, set_, meshes.IMPLIED)
+    along = meshes.direction_of(energy, direction, camera or [], loaded, chosen)
+    report.say_compiling()
+    with _interruptible() as cancel:
+        meshes.write(loaded, chosen, energy, along, output, cancel)
 
 
 @app.command(hidden=True)
@@ -204,14 +265,21 @@ def preview(scene: SceneName,
         print(f"wrote {path}")
 
 
-def _load(source: str, frame: int | None, assignments: list[str] | None = None) -> Scene:
+def _load(source: str, frame: int | None) -> Scene:
     from jaart.core.io import BUILT_IN, load
 
     scene = load(source, frame)
-    typed.check_meaning(assignments or [], scene)
-    for note in () if source in BUILT_IN else scene.notes:
-        print(f"jaart: note: {note}", file=sys.stderr)
+    report.note(() if source in BUILT_IN else scene.notes)
     return scene
+
+
+def _open(source: str, frame: int | None, chosen: Settings, preset: str, assignments: list[str] | None,
+          implied: tuple[str, ...] = ()) -> tuple[Scene, Settings]:
+    """A scene and the settings as it can take them; implied: names of settings that other options gave."""
+    scene = _load(source, frame)
+    fitting, notes = typed.suit(scene, chosen, assignments or [], implied)
+    report.note(notes if preset != DEFAULT_PRESET else ())  # that one is for every scene
+    return scene, fitting
 
 
 def _check_rays_alone(camera: list[str] | None, output: Path | None, hits: Path | None, map_: str) -> None:
@@ -224,10 +292,11 @@ def _check_rays_alone(camera: list[str] | None, output: Path | None, hits: Path 
 
 def _check_map(name: str, scene: Scene) -> None:
     from jaart.core.maps import find
+    from jaart.core.quality import known
 
     find(name)
-    if name.endswith("_error") and scene.model is None:
-        raise SettingsError(f"map {name}: needs exact solids, which {scene.source} has not")
+    if name.endswith("_error") and not known(scene):
+        raise SettingsError(f"map {name}: needs an exact surface, which nobody knows of {scene.source}")
 
 
 def _which_ray(pixel: str | None, origin: str | None,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from jaart.core.errors import FileError, RayError, SettingsError
+from jaart.core.errors import FileError, RayError
 
 if TYPE_CHECKING:
     from jaart.core.camera import Camera
@@ -102,31 +102,35 @@ def vector(text: str, option: str) -> tuple[float, float, float]:
 
 
 def settings(preset_name: str, assignments: Sequence[str]) -> Settings:
-    """The settings of a preset with single values on top; a value that has no meaning there is refused."""
-    from jaart.core.settings import PARAMETERS, parse, preset
+    """The settings of a preset with single values on top; what a scene makes of them, `suit` says."""
+    from jaart.core.settings import parse, preset
 
-    chosen = parse(assignments, preset(preset_name))
-    for name in _names(assignments):
-        if not PARAMETERS[name].matters(chosen):
-            raise SettingsError(f"{name} has no meaning beside the other settings")
-    return chosen
+    return parse(assignments, preset(preset_name))
 
 
-def check_meaning(assignments: Sequence[str], scene: Scene) -> None:
-    """Refuse settings that mean something for models only, by name, when the scene is none."""
-    from jaart.core.settings import PARAMETERS
+def suit(scene: Scene, chosen: Settings, assignments: Sequence[str],
+         implied: Sequence[str] = ()) -> tuple[Settings, tuple[str, ...]]:
+    """The settings as a scene can take them, and notes of what was left out of the preset.
 
-    for name in _names(assignments):
-        if scene.model is None and PARAMETERS[name].stage == "levels":
-            raise SettingsError(f"{name} has no meaning for {scene.source}: it is no model scene")
+    assignments: what was typed after --set; implied: names of settings that other options gave. Raises
+    SettingsError, by name, for a typed value that has no meaning in the scene or beside the others.
+    """
+    from jaart.core.meaning import check, check_names
+    from jaart.core.suited import suited
+
+    names = [text.partition("=")[0].strip() for text in assignments]
+    fitting, notes = suited(scene, chosen, [*names, *implied])
+    check_names(names, scene, fitting)
+    check(scene, fitting)
+    return fitting, notes
 
 
 def camera(assignments: Sequence[str], scene: Scene, chosen: Settings, size: tuple[int, int] = (1, 1)) -> Camera:
     """A camera with the whole scene in view, and what was typed on top."""
-    from jaart.core import prepare
     from jaart.core.camera import Camera, parse
+    from jaart.core.extents import bounds
 
-    return parse(assignments, Camera.fit(prepare.extent(scene, chosen), size=size))
+    return parse(assignments, Camera.fit(bounds(scene, chosen), size=size))
 
 
 def pixel_ray(view: Camera, size: tuple[int, int], at: tuple[int, int]) -> Ray:
@@ -173,7 +177,3 @@ def output(path: Path, option: str, *suffixes: str) -> None:
         raise FileError(path, f"cannot be written: there is no folder {str(path.parent)!r}")
     if not os.access(path.parent, os.W_OK):
         raise FileError(path, f"cannot be written: no permission in the folder {str(path.parent)!r}")
-
-
-def _names(assignments: Sequence[str]) -> list[str]:
-    return [text.partition("=")[0].strip() for text in assignments]

@@ -40,7 +40,15 @@ def rule_of(scene: Scene, settings: Settings, values: Chosen) -> Rule:
                 reach=values.radius if values.neighbourhood == "ball" else math.inf,
                 k=settings.k if values.neighbourhood == "knn" else 0,
                 oriented=int(oriented(scene, settings, values)),
-                degree=settings.degree if values.method in FITTED else 0, c=settings.mahalanobis_c)
+                degree=settings.degree if values.method in FITTED else 0,
+                patch=_patch(scene, settings, values), c=settings.mahalanobis_c)
+
+
+def _patch(scene: Scene, settings: Settings, values: Chosen) -> float:
+    """Variance in h², along one direction, of the patch that a surfel stands for; a cloud's points are points."""
+    if values.method != "polynomial" or scene.kind == "cloud":
+        return 0.0
+    return (settings.patch / values.h) ** 2 / 12
 
 
 def bounds_of(settings: Settings, values: Chosen) -> Bounds:

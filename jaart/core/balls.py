@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from jaart.core.kernels import ball_ray, gather, guess
 from jaart.core.kernels.ball_ray import NOTHING, ROOM, Balls
 from jaart.core.kernels.gather import Grid
-from jaart.core.kernels.records import FIT_SIZE, Out, Plan, Sites
+from jaart.core.kernels.records import Out, Plan, Sites
 from jaart.core.kernels.tree import Tree
 from jaart.core.scene import Array
-from jaart.core.tiles import Pixels
-from jaart.core.tracers import NO_LOG, SCRATCH_A_SURFEL
+from jaart.core.tiles import Pixels, columns_for
+from jaart.core.tracers import NO_LOG, scratch
 
 Ints = NDArray[np.int64]
 #: Room for the heap at first; it doubles where a ray needs more.
@@ -72,20 +72,41 @@ class CloudTracer:
         return self._balls.sites
 
     @property
+    def offset(self) -> Array:
+        """Origin (3,) of the frame that balls are in."""
+        return self.cloud.offset
+
+    @property
+    def gathered(self) -> int:
+        """How many balls rays have asked for so far."""
+        return self._balls.ready
+
+    def ball(self, slots: Ints) -> tuple[Array, Array]:
+        """Centres (B, 3) in the local frame and radii (B,) of gathered balls."""
+        number = np.full(self.gathered, -1)
+        known = np.flatnonzero((self._balls.slot >= 0) & (self._balls.slot < self.gathered))
+        number[self._balls.slot[known]] = known
+        return self.cloud.centres[number[slots]], self.cloud.radii[number[slots]]
+
+    def scratch(self) -> tuple[Array, Array]:
+        """Room for the weights and fits of the ball with the most surfels."""
+        return scratch(self._most)
+
+    @property
     def fits(self) -> int:
         """How many planes or polynomials at centres were made: each is one evaluation."""
-        return self._balls.count if self.guessing else 0
+        return self._balls.ready if self.guessing else 0
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
               any_hit: bool = False) -> int:
         """Trace some rays, in the cloud's own coordinates, into their rows of the columns; see `Tracer`."""
         local = origins[pixels] - self.cloud.offset
         ways, rows, todo, written = directions[pixels], np.arange(len(pixels)), np.arange(len(pixels)), 0
-        mine = Out(*(column[pixels] for column in out))
+        mine = columns_for(len(pixels))
         while len(todo):
             missing = np.full(len(todo), NOTHING)
             balls = self._balls._replace(any_hit=int(any_hit))
-            work, fit = np.empty(SCRATCH_A_SURFEL * self._most), np.zeros(FIT_SIZE)
+            work, fit = self.scratch()
             keys, items = np.empty(self._heap), np.empty(self._heap, np.int64)
             written = ball_ray.trace_ball_rays(balls, self.plan, local, ways, rows[todo], mine, log, missing, work, fit,
                                                keys, items)
@@ -94,8 +115,8 @@ class CloudTracer:
             self._gather(np.unique(missing[missing >= 0]))
             todo = todo[missing != NOTHING]
         mine.point[:] += self.cloud.offset
-        for column, values in zip(out, mine, strict=True):
-            column[pixels] = values
+        for name, column in out._asdict().items():
+            column[pixels] = getattr(mine, name)
         return int(written)
 
     def _gather(self, balls: Ints) -> None:
@@ -106,7 +127,7 @@ class CloudTracer:
             if not len(new):
                 return
             first, ids, columns = gathered(self.cloud, new)
-            sites, at = before.sites, before.count
+            sites, at = before.sites, before.ready
             total = int(sites.first[at])
             made = Sites((0, 0, 0), _behind(sites.centres, at, self.cloud.centres[new]),
                          _behind(sites.first, at + 1, total + first[1:]), _behind(sites.ids, total, ids),
@@ -115,10 +136,10 @@ class CloudTracer:
             guesses = before.guesses
             if self.guessing:
                 fitted = np.empty((len(new), guess.GUESS_WIDTH))
-                guess.fit_centres(made, self.plan, at, fitted, np.empty(SCRATCH_A_SURFEL * self._most), np.zeros(FIT_SIZE))
+                guess.fit_centres(made, self.plan, at, fitted, *self.scratch())
                 guesses = _behind(guesses, at, fitted)
             before.slot[new] = np.arange(at, at + len(new))
-            self._balls = before._replace(sites=made, count=at + len(new), guesses=guesses)
+            self._balls = before._replace(sites=made, ready=at + len(new), guesses=guesses)
 
 
 def gathered(cloud: Cloud, balls: Ints) -> tuple[Ints, NDArray[np.int32], Array]:

@@ -56,22 +56,25 @@ class Camera:
         self.frame()
 
     @classmethod
-    def fit(cls, scene: Scene | Vector, direction: Vector = DEFAULT_VIEW, fov: float = 30.0,
+    def fit(cls, scene: Scene | Vector | tuple[Array, Array], direction: Vector = DEFAULT_VIEW, fov: float = 30.0,
             size: tuple[int, int] = (1, 1)) -> Camera:
         """A camera that sees a whole scene from a direction.
 
-        scene: a scene at the raster of its file, or the size of one in cells; direction: from the
-        middle towards the eye; fov: degrees; size: (width, height) of the picture, or their ratio.
+        scene: a scene at the raster of its file, the size of one that begins at the origin, or its lowest and
+        highest corner; direction: from the middle towards the eye; fov: degrees; size: (width, height) of the
+        picture, or their ratio. A scene that is a single point is seen from 1 away.
         """
         check_size(size)
-        extent = np.asarray(scene if isinstance(scene, tuple) else _extent(scene))
-        middle, towards = extent / 2, np.asarray(direction) / np.linalg.norm(direction)
-        camera = cls(eye=tuple(middle + towards), target=tuple(middle), fov=fov)
+        low, high = _corners(scene)
+        extent = high - low
+        middle, towards = low + extent / 2, np.asarray(direction) / np.linalg.norm(direction)
+        far = float(np.linalg.norm(extent)) or 1.0
+        camera = cls(eye=tuple(middle + far * towards), target=tuple(middle), fov=fov)
         corners = (np.array(list(itertools.product((0, 1), repeat=3))) - 0.5) * extent
         right, up, forward = camera.frame()
         slope = math.tan(math.radians(fov) / 2) / max(size)
         sideways = np.maximum(abs(corners @ right) / (slope * size[0]), abs(corners @ up) / (slope * size[1]))
-        distance = MARGIN * float(np.max(sideways - corners @ forward))
+        distance = MARGIN * float(np.max(sideways - corners @ forward)) or 1.0
         return camera.replace(eye=tuple(middle + towards * distance))
 
     def frame(self) -> tuple[Array, Array, Array]:
@@ -134,11 +137,16 @@ def check_size(size: tuple[int, int]) -> None:
         raise RayError(f"size {size[0]}x{size[1]}: expected a width and a height from 1 to {LONGEST_EDGE}")
 
 
-def _extent(scene: Scene) -> Vector:
-    from jaart.core.prepare import extent
-    from jaart.core.settings import Settings
+def _corners(scene: Scene | Vector | tuple[Array, Array]) -> tuple[Array, Array]:
+    """Lowest and highest corner of a scene, of a size, or as they are."""
+    if not isinstance(scene, tuple):
+        from jaart.core.extents import bounds
+        from jaart.core.settings import Settings
 
-    return extent(scene, Settings())
+        return bounds(scene, Settings())
+    if len(scene) == 2:
+        return np.asarray(scene[0], dtype=np.float64), np.asarray(scene[1], dtype=np.float64)
+    return np.zeros(3), np.asarray(scene, dtype=np.float64)
 
 
 def _number(name: str, text: str) -> float:

@@ -93,8 +93,8 @@ def _nearest(found: Surfels, empty: NDArray[np.uint8], k: int, exact: bool) -> S
     _check_memory(len(ids), f"k = {k}")
     counts = np.zeros(empty.size + 1, np.int64)
     counts[1 + np.ravel_multi_index(tuple(cells.T), empty.shape)] = sizes
-    shape = (empty.shape[0], empty.shape[1], empty.shape[2])
-    return Sites(shape, np.empty((0, 3)), np.cumsum(counts), ids, _columns(found, cells, sizes, ids))
+    nx, ny, nz = empty.shape
+    return Sites((nx, ny, nz), np.empty((0, 3)), np.cumsum(counts), ids, _columns(found, cells, sizes, ids))
 
 
 def _columns(found: Surfels, cells: NDArray[np.intp], sizes: NDArray[np.int64], ids: NDArray[np.int32]) -> Array:

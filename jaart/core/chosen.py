@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from jaart.core import extents
 from jaart.core.errors import SettingsError
 from jaart.core.groups.surface import ENERGIES
 from jaart.core.kernels.weigh import WENDLAND_END
@@ -19,12 +20,14 @@ from jaart.core.settings import PARAMETERS, Settings
 SMALLEST_H = 1e-100
 #: h of a lattice where nobody says, in cells [T §3.1.3].
 LATTICE_H = 0.8
-#: Radius of a lattice's neighbourhood where nobody says, in h: 2 cells at h = 0.8, as [T] has it.
-LATTICE_RADIUS = 2.5
+#: Radius of a lattice's neighbourhood where nobody says, in h: 2.5 cells at h = 0.8, where a polynomial's errors end.
+LATTICE_RADIUS = 3.125
 #: Radius of a cloud's neighbourhood where nobody says, in h: farther surfels weigh less than 1e-7.
 CLOUD_RADIUS = 4.0
-#: Off-centre bound where nobody says, in h: 0.3 cells at h = 0.8 [T 2.21]; in a cloud the value at a sheet's edge.
-LATTICE_OFF_CENTRE, CLOUD_OFF_CENTRE = 0.375, 0.6
+#: Off-centre bound where nobody says, in h: a little more than at the edge of an even sheet, 0.56 h.
+OFF_CENTRE = 0.75
+#: Distance from a surface up to which an energy's minimum is one, in h: 0.3 cells at h = 0.8 [T 2.21].
+NEAR = 0.375
 #: Half the diagonal of a cell: as far as a point in it may be from its centre.
 HALF_DIAGONAL = math.sqrt(3) / 2
 
@@ -62,12 +65,11 @@ def chosen(scene: Scene, settings: Settings) -> Chosen:
     radius = _radius(scene, settings, neighbourhood, h)
     search = _search(settings)
     lattice = scene.kind != "cloud"
-    off_centre = (LATTICE_OFF_CENTRE if lattice else CLOUD_OFF_CENTRE) * h
     trust = radius if math.isfinite(radius) else LATTICE_RADIUS * h
     return Chosen(
         method=settings.method, search=search, weight=settings.weight, normal=_normal(scene, settings),
         neighbourhood=neighbourhood, h=h, radius=radius, trust=_or_length(scene, settings, "trust", trust),
-        off_centre=_or_length(scene, settings, "max_off_centre", off_centre),
+        off_centre=_or_length(scene, settings, "max_off_centre", OFF_CENTRE * h),
         nearest=_or_length(scene, settings, "max_nearest", math.inf), level=_level(settings, h),
         step=settings.step if lattice else settings.step * h)
 
@@ -80,8 +82,6 @@ def length(scene: Scene, settings: Settings, name: str) -> float:
     value: Length = getattr(settings, name)
     if not value.unit:
         return value.value
-    from jaart.core import extents
-
     resolved = value.resolve(extents.diagonal(scene, settings), extents.spacing(scene) if value.unit == "s" else 1.0)
     PARAMETERS[name].check(Length(resolved))
     return resolved
@@ -95,8 +95,6 @@ def _or_length(scene: Scene, settings: Settings, name: str, otherwise: float) ->
 
 
 def _feature_size(scene: Scene, settings: Settings) -> float:
-    from jaart.core import extents
-
     if settings.h == "auto":
         return LATTICE_H if scene.kind != "cloud" else extents.cloud_h(scene)
     h, largest = length(scene, settings, "h"), extents.largest(scene, settings)
@@ -145,7 +143,7 @@ def _level(settings: Settings, h: float) -> float:
     if settings.method == "fill_level":
         return 0.5
     name = settings.energy if settings.method == "isosurface" else settings.method
-    near = LATTICE_OFF_CENTRE * h
+    near = NEAR * h
     levels: dict[str, Any] = {"tangent": near, "off_centre": near, "mahalanobis": settings.mahalanobis_c * h * h
                               + near * near, "angle": 0.5}
     level = float(levels.get(name, near))

@@ -37,13 +37,14 @@ class Points:
 
 def points_of(scene: Scene, settings: Settings, values: Chosen) -> Points:
     """The points with the normals that the settings need."""
-    assert scene.points is not None
+    points = scene.points
+    assert points is not None
     if scene.normals is not None:
-        return Points(scene.points, scene.normals)
+        return Points(points, scene.normals)
     if not needs_normals(scene, settings, values):
-        return Points(scene.points, scene.once("no_normals", (), lambda: frozen(np.zeros(scene.points.shape))))
+        return Points(points, scene.once("no_normals", (), lambda: frozen(np.zeros(points.shape))))
     made = orient.normals_of(scene, settings.orient)
-    return Points(scene.points, made.normal, made.notes)
+    return Points(points, made.normal, made.notes)
 
 
 def cloud_of(scene: Scene, settings: Settings, values: Chosen) -> Cloud:

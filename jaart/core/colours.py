@@ -40,7 +40,10 @@ COLOURS: dict[str, Colour] = {
     "converged": (86, 180, 233), "background": (200, 204, 210), "cap": (213, 94, 0),
     "left_trust": (230, 159, 0), "parallel": (240, 228, 66), "few_neighbours": (204, 121, 167),
     "undefined_normal": (117, 57, 140), "bounded": (0, 158, 115), "floor": (0, 114, 178),
-    "undecided": (120, 72, 40), "bad_ray": (220, 20, 60)}
+    "undecided": (120, 72, 40), "bad_ray": (220, 20, 60),
+    # what else is refused: greens beside that of bounded
+    "bounded_weight": (0, 92, 66), "bounded_nearest": (86, 198, 164), "bounded_angle": (122, 168, 32),
+    "bounded_gap": (168, 220, 190)}
 
 
 def coloured(values: NDArray[np.float64], low: float, high: float) -> Bytes:

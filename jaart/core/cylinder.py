@@ -12,32 +12,25 @@ import numpy as np
 from jaart.core.cell_table import cell_table
 from jaart.core.chosen import HALF_DIAGONAL, Chosen
 from jaart.core.kernels import cylinder
-from jaart.core.kernels.records import LOG_WIDTH, Cells, Out, Plan, Sites
+from jaart.core.kernels.records import LOG_WIDTH, Cells, Out, Plan
 from jaart.core.scene import Array
 from jaart.core.surfels import Surfels
 from jaart.core.tiles import Pixels, columns_for
-from jaart.core.tracers import NO_LOG
+from jaart.core.tracers import NO_LOG, OnLattice
 
 #: Room for rounding in a neighbourhood's radius, in cells.
 _ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class CylinderTracer:
+class CylinderTracer(OnLattice):
     """A lattice of surfels, each a disc of radius h, which is the cylinder's radius too.
 
     cells: the neighbourhoods, of `reach(radius)` or more; plan: how the energies along a ray are sampled; radius:
     of discs and cylinder, in cells.
     """
 
-    cells: Cells
-    plan: Plan
     radius: float
-
-    @property
-    def sites(self) -> Sites:
-        """The cells with the surfels near each."""
-        return self.cells.sites
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
               any_hit: bool = False) -> int:

@@ -38,7 +38,7 @@ class Environment:
     """Sky and floor about a scene.
 
     low, high: corners (3,) of the scene's box, which stands on the floor; levels: fill levels (nx, ny, nz) of a
-    lattice from (0, 0, 0) on, None for a cloud, of which nobody knows where it holds water.
+    lattice that fills the box, None for a cloud, of which nobody knows where it holds water.
     """
 
     low: Array
@@ -70,7 +70,8 @@ class Environment:
         wet = np.zeros(len(point), dtype=np.bool_)
         if self.levels is not None:
             held = np.flatnonzero((point > -1e-6).all(axis=1) & (point < self.high + 1e-6).all(axis=1))
-            wet[held] = _between(self.levels, point[held]) > 0.5
+            cells = np.array(self.levels.shape) / (self.high - self.low)
+            wet[held] = _between(self.levels, point[held] * cells) > 0.5
         return wet
 
     def change(self, origin: Array, direction: Array, begin: Array, end: Array) -> Array:

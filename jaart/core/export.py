@@ -13,9 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import jaart
+from jaart.core.cloud_surfels import Points
 from jaart.core.io.atomic import replacing
 from jaart.core.records import STATUS_NAMES, Hits, Trace
 from jaart.core.settings import PARAMETERS, Settings
+from jaart.core.statistics import Statistics, table
 from jaart.core.surfels import Surfels
 
 Target = str | PathLike[str]
@@ -23,7 +25,7 @@ Target = str | PathLike[str]
 #: The vectors of a step, by the name of their columns.
 _VECTORS = {"query": "query", "barycentre": "barycentre", "normal": "step_normal", "next": "next_point"}
 _PER_RAY = ("origin", "direction", "hit", "t", "point", "normal", "status", "off_centre", "energy", "iterations",
-            "evaluations", "neighbours", "cells")
+            "evaluations", "neighbours", "cells", "lowered")
 
 
 def save_picture(picture: NDArray[np.uint8], path: Target) -> None:
@@ -35,9 +37,10 @@ def save_picture(picture: NDArray[np.uint8], path: Target) -> None:
 
 
 def hits_arrays(hits: Hits) -> dict[str, Any]:
-    """Everything of the hits by name: one row a ray, the names of the end states, prep_s and ray_s."""
+    """Everything of the hits by name: one row a ray, then the names of the end states, prep_s, ray_s and the text
+    shading_normal, which says what `normal` holds."""
     return {**{name: getattr(hits, name) for name in _PER_RAY}, "status_names": np.array(STATUS_NAMES),
-            "prep_s": hits.prep_s, "ray_s": hits.ray_s}
+            "prep_s": hits.prep_s, "ray_s": hits.ray_s, "shading_normal": hits.settings.shading_normal}
 
 
 def save_hits(hits: Hits, path: Target) -> None:
@@ -49,15 +52,17 @@ def save_hits(hits: Hits, path: Target) -> None:
 def trace_record(trace: Trace) -> dict[str, Any]:
     """One ray in plain lists and numbers: all of its Trace, with the surfels that it used; NaN becomes None.
 
-    Neighbours are the numbers of surfels in the scene, as is surfels.index.
+    Neighbours are the numbers of surfels in the scene, as is surfels.index. A step on a lattice names its cell, one
+    in a cloud its ball by the number in balls, None for one that rounding put beside the ray.
     """
     return {
         "jaart": jaart.__version__, "pixel": _plain(trace.pixel), "extent": _plain(trace.extent),
+        "low": _plain(trace.low), "high": _plain(trace.high),
         "settings": settings_record(trace.settings),
         "ray": _fields(trace, "origin", "direction", "status", "t", "point", "normal"),
         "steps": [_step(trace, i) for i in range(trace.steps)],
-        "cells": _fields(trace, "cells", "borders", "with_surfel"),
-        "curves": _fields(trace.curves, "t", "tangent", "off_centre", "mahalanobis"),
+        "cells": _fields(trace, "cells", "borders", "with_surfel"), "balls": _plain(trace.balls),
+        "curves": _fields(trace.curves, "t", "tangent", "off_centre", "mahalanobis", "angle"),
         "surfels": _used_surfels(trace.surfels, trace.neighbours),
     }
 
@@ -75,13 +80,20 @@ def save_trace_csv(trace: Trace, path: Target) -> None:
 
 
 def trace_rows(trace: Trace) -> list[list[Any]]:
-    """The steps of a ray as rows, the header first; lengths in cells, neighbours counted."""
-    header = ["step", "start", "outcome", "cell_i", "cell_j", "cell_k", "t_query", "t_next"]
+    """The steps of a ray as rows, the header first; lengths in cells or cloud units, neighbours counted."""
+    place = ["ball"] if _in_cloud(trace) else ["cell_i", "cell_j", "cell_k"]
+    header = ["step", "start", "outcome", *place, "t_query", "t_next"]
     header += [f"{name}_{axis}" for name in _VECTORS for axis in "xyz"]
-    return [[*header, "energy", "off_centre", "weight_sum", "neighbours"]] + [
-        [i, trace.start[i], trace.outcome[i], *trace.step_cell[i],
+    return [[*header, "energy", "off_centre", "angle", "weight_sum", "neighbours"]] + [
+        [i, trace.start[i], trace.outcome[i], *_number(_place(trace, i)),
          *("" if math.isnan(v) else repr(float(v)) for v in _numbers(trace, i)), len(trace.neighbours[i])]
         for i in range(trace.steps)]
+
+
+def save_statistics_csv(statistics: Statistics, path: Target) -> None:
+    """Write the statistics of a picture as CSV (see `statistics.table`)."""
+    with replacing(Path(path)) as part, part.open("w", newline="", encoding="utf-8") as file:
+        csv.writer(file, lineterminator="\n").writerows(table(statistics))
 
 
 def settings_record(settings: Settings) -> dict[str, Any]:
@@ -90,23 +102,47 @@ def settings_record(settings: Settings) -> dict[str, Any]:
     return {name: str(value) if PARAMETERS[name].kind == "length" else _plain(value) for name, value in values.items()}
 
 
+def _in_cloud(trace: Trace) -> bool:
+    return isinstance(trace.surfels, Points)
+
+
+def _place(trace: Trace, i: int) -> list[int] | int | None:
+    """The cell of a step, or the number of its ball."""
+    cell: list[int] = trace.step_cell[i].tolist()
+    return (cell[0] if cell[0] >= 0 else None) if _in_cloud(trace) else cell
+
+
+def _number(place: list[int] | int | None) -> list[Any]:
+    return place if isinstance(place, list) else ["" if place is None else place]
+
+
+def _angle(trace: Trace, i: int) -> float:
+    """|<c/|c|, n>| of a step, c = a(x) - x [T 2.23]; NaN where c vanishes."""
+    off = trace.barycentre[i] - trace.query[i]
+    size = float(np.linalg.norm(off))
+    return abs(float(off @ trace.step_normal[i])) / size if size > 0 else math.nan
+
+
 def _numbers(trace: Trace, i: int) -> list[float]:
     vectors = [getattr(trace, field)[i] for field in _VECTORS.values()]
-    return [trace.t_query[i], trace.t_next[i], *np.concatenate(vectors),
-            trace.energy[i], trace.off_centre[i], trace.weight_sum[i]]
+    return [trace.t_query[i], trace.t_next[i], *np.concatenate(vectors), trace.energy[i], trace.off_centre[i],
+            _angle(trace, i), trace.weight_sum[i]]
 
 
 def _step(trace: Trace, i: int) -> dict[str, Any]:
     fields = ("start", "outcome", "t_query", "t_next", "energy", "off_centre", "weight_sum", "neighbours", "weights")
-    return {"step": i, "cell": _plain(trace.step_cell[i])} | {
+    return {"step": i, "ball" if _in_cloud(trace) else "cell": _place(trace, i), "angle": _plain(_angle(trace, i))} | {
         name: _plain(getattr(trace, name)[i]) for name in fields} | {
         name: _plain(getattr(trace, field)[i]) for name, field in _VECTORS.items()}
 
 
-def _used_surfels(surfels: Surfels, neighbours: tuple[NDArray[np.int64], ...]) -> dict[str, Any]:
+def _used_surfels(surfels: Surfels | Points, neighbours: tuple[NDArray[np.int64], ...]) -> dict[str, Any]:
     index = np.unique(np.concatenate([np.empty(0, np.int64), *neighbours]))
-    return {"total": len(surfels), "index": _plain(index), "cell": _plain(surfels.cells[index]),
-            "point": _plain(surfels.points[index]), "normal": _plain(surfels.normal[index])}
+    cells = {"cell": _plain(surfels.cells[index])} if isinstance(surfels, Surfels) else {}
+    normal = surfels.normal[index]
+    known = np.where(normal.any(axis=1, keepdims=True), normal, np.nan)
+    return {"total": len(surfels), "index": _plain(index), **cells,
+            "point": _plain(surfels.points[index]), "normal": _plain(known)}
 
 
 def _fields(record: object, *names: str) -> dict[str, Any]:

@@ -28,7 +28,14 @@ def bounds(scene: Scene, settings: Settings) -> tuple[Array, Array]:
     if scene.kind == "cloud":
         return cloud.bounds(scene)
     shape = (raster(scene, settings),) * 3 if scene.levels is None else scene.levels.shape
-    return np.zeros(3), np.array(shape, dtype=np.float64)
+    return np.zeros(3), np.array(shape) * np.array(edges(scene))
+
+
+def edges(scene: Scene) -> tuple[float, float, float]:
+    """Edges of a lattice's cell along x, y, z in units of the longest, in which the lattice's lengths count."""
+    x, y, z = scene.spacing
+    longest = max(x, y, z)
+    return x / longest, y / longest, z / longest
 
 
 def diagonal(scene: Scene, settings: Settings) -> float:

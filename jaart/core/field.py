@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from threading import Event
 
 import numpy as np
@@ -21,37 +23,87 @@ ENERGIES = {"tangent": r.TANGENT, "tangent_step": r.TANGENT_STEP, "off_centre": 
             "mahalanobis": r.MAHALANOBIS, "angle": r.ANGLE}
 #: The energy that a ray's direction enters.
 DIRECTED = "tangent_step"
-_NO_DIRECTION = (0.0, 0.0, 1.0)
+#: Half the width of a central difference, in h.
+WIDTH = 1e-5
+#: A thread takes the gradients at so many points at a time.
+POINTS_AT_ONCE = 4096
 
 
-def energy_field(cells: Cells, plan: Plan, energy: str, emphasise: bool, divisions: int,
-                 direction: Vector | None = None, threads: int | None = None, cancel: Event | None = None) -> Array:
+@dataclass(frozen=True)
+class Energy:
+    """Which energy, of which surface.
+
+    cells, plan: neighbourhoods, and how a point is evaluated; name: one of ENERGIES; emphasise: by the angle
+    [T 2.24]; direction: unit vector of e_ts [T 2.20].
+    """
+
+    cells: Cells
+    plan: Plan
+    name: str = "tangent"
+    emphasise: bool = False
+    direction: Vector = (0.0, 0.0, 1.0)
+
+    @property
+    def asked(self) -> Plan:
+        """The plan with this energy in it."""
+        how = self.plan.how._replace(energy=ENERGIES[self.name], emphasise=int(self.emphasise))
+        return self.plan._replace(how=how)
+
+    def scratch(self) -> tuple[Array, Array]:
+        """Room for the weights and fits of the cell with the most surfels, for one thread."""
+        return scratch(int(np.diff(self.cells.sites.first).max(initial=0)))
+
+
+def energy_field(energy: Energy, divisions: int, threads: int | None = None, cancel: Event | None = None) -> Array:
     """The energy (nx·divisions + 1, …) at the points (i, j, k)/divisions of a lattice; NaN where no surfel is near.
 
-    cells, plan: the neighbourhoods and how a point is evaluated; energy: a name of ENERGIES; emphasise: by the
-    angle [T 2.24]; direction: unit vector of e_ts [T 2.20]; threads: as many as the machine has when None. On a face
-    the cell on the low side gives the neighbourhood. Raises SettingsError when the field would not fit into memory,
-    Cancelled after cancel was set.
+    threads: as many as the machine has when None. On a face the cell on the low side gives the neighbourhood. Raises
+    SettingsError when the field would not fit into memory, Cancelled after cancel was set.
     """
-    shape = tuple(n * divisions + 1 for n in cells.sites.shape)
+    sites, plan = energy.cells.sites, energy.asked
+    shape = tuple(n * divisions + 1 for n in sites.shape)
     _check_memory(shape, divisions)
     values = np.full(shape, np.nan)
-    how = plan._replace(how=plan.how._replace(energy=ENERGIES[energy], emphasise=int(emphasise)))
 
     def layer(number: int) -> None:
-        if cancel is None or not cancel.is_set():
-            work, fit = scratch(cells.sites)
-            field.sample_layer(cells.sites, how, direction or _NO_DIRECTION, divisions, number, values, work, fit)
+        field.sample_layer(sites, plan, energy.direction, divisions, number, values, *energy.scratch())
 
-    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
-        list(pool.map(layer, range(cells.sites.shape[0])))
-    if cancel is not None and cancel.is_set():
-        raise Cancelled("the field of the energy was cancelled")
+    _all(layer, range(sites.shape[0]), threads, cancel)
     return values
 
 
+def energy_gradients(energy: Energy, points: Array, threads: int | None = None, cancel: Event | None = None) -> Array:
+    """The energy's gradient (N, 3) at points (N, 3) in cells, to about 1e-9; NaN where it is not defined.
+
+    Raises Cancelled after cancel was set.
+    """
+    sites, plan = energy.cells.sites, energy.asked
+    result, at = np.empty(points.shape), np.array(points)
+
+    def some(first: int) -> None:
+        part = slice(first, first + POINTS_AT_ONCE)
+        field.write_gradients(sites, plan, energy.direction, WIDTH * plan.rule.h, at[part], result[part],
+                              *energy.scratch())
+
+    _all(some, range(0, len(points), POINTS_AT_ONCE), threads, cancel)
+    return result
+
+
+def _all(work: Callable[[int], None], numbers: range, threads: int | None, cancel: Event | None) -> None:
+    """Do the work of every number in a pool of threads. Raises Cancelled after cancel was set."""
+    def one(number: int) -> None:
+        if cancel is None or not cancel.is_set():
+            work(number)
+
+    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
+        for _ in pool.map(one, numbers):
+            pass
+    if cancel is not None and cancel.is_set():
+        raise Cancelled("the field of the energy was cancelled")
+
+
 def _check_memory(shape: tuple[int, ...], divisions: int) -> None:
-    needed = 8 * int(np.prod(np.array(shape, np.float64)))
-    if needed > memory.limit():
+    needed, most = 8 * int(np.prod(np.array(shape, np.float64))), memory.limit()
+    if needed > most:
         raise SettingsError(f"subdivide = {divisions}: a field of {'x'.join(map(str, shape))} values needs "
-                            f"{memory.words(needed)} of memory, more than the {memory.words(memory.limit())} it may take")
+                            f"{memory.words(needed)} of memory, more than the {memory.words(most)} it may take")

@@ -92,6 +92,12 @@ def find(name: str) -> Map:
     return MAPS[name]
 
 
+def unit(name: str, kind: str) -> str:
+    """The unit of a map in a kind of scene (see KINDS): lengths count in cells of a lattice, in units of a cloud."""
+    about = find(name)
+    return "units" if kind == "cloud" and about.unit == "cells" else about.unit
+
+
 def scale(name: str, hits: Hits, quality: Quality | None = None) -> tuple[float, float]:
     """(low, high) of a map's colours: round numbers that cover all but the few highest values."""
     if name == "shaded":

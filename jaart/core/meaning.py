@@ -32,8 +32,11 @@ REFUSED: tuple[Refusal, ...] = (
      "a fitted surface is no least energy; expected another search"),
     ("search", lambda scene, s, c: c.method == "projection" and c.search == "centres",
      "a projection has no plane that is kept; expected another search"),
-    ("emphasise", lambda scene, s, c: s.emphasise and (c.search != "minimise" or c.method == "angle"),
+    ("emphasise", lambda scene, s, c: s.emphasise and c.method != "isosurface"
+     and (c.search != "minimise" or c.method == "angle"),
      "emphasises an energy that is minimised; expected search = minimise, and a method other than angle"),
+    ("emphasise", lambda scene, s, c: s.emphasise and c.method == "isosurface" and s.energy == "angle",
+     "emphasises another energy by the angle; expected an energy other than angle"),
     ("normal", lambda scene, s, c: _bare(scene) and s.orient == "none" and c.normal == "surfel",
      "the points have no normals and orient = none; expected covariance"),
     ("method", lambda scene, s, c: _bare(scene) and s.orient == "none" and c.method in ("mahalanobis", "cylinder"),

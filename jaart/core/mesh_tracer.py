@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Event
 
@@ -10,15 +9,16 @@ import numpy as np
 
 from jaart.core.chosen import Chosen
 from jaart.core.contour import Mesh, contour
-from jaart.core.field import energy_field
+from jaart.core.extents import edges
+from jaart.core.field import Energy, energy_field, energy_gradients
 from jaart.core.kernels import mesh as kernels
 from jaart.core.kernels.mesh import Faces
-from jaart.core.kernels.records import Cells, Out, Plan, Sites
+from jaart.core.kernels.records import Cells, Out, Plan
 from jaart.core.meshes import energy_mesh, level_mesh
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
 from jaart.core.tiles import Pixels, columns_for
-from jaart.core.tracers import NO_LOG
+from jaart.core.tracers import NO_LOG, OnLattice
 from jaart.core.tree import box_tree
 
 #: A hit on the edge of a triangle may be rounded out of its box: boxes are larger by this, in cells.
@@ -26,27 +26,14 @@ MARGIN = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class MeshTracer:
-    """A mesh that rays meet.
+class MeshTracer(OnLattice):
+    """A mesh that rays meet; the cells are those of the energies along a ray.
 
-    mesh: its triangles; faces: the same with a tree over them; plan: of the energies along a ray; lattice: makes the
-    neighbourhoods of those energies, when one is followed.
+    mesh: its triangles; faces: the same with a tree over them.
     """
 
     mesh: Mesh
     faces: Faces
-    plan: Plan
-    lattice: Callable[[], Cells]
-
-    @property
-    def cells(self) -> Cells:
-        """The lattice's cells."""
-        return self.lattice()
-
-    @property
-    def sites(self) -> Sites:
-        """The cells with the surfels near each."""
-        return self.cells.sites
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
               any_hit: bool = False) -> int:
@@ -62,34 +49,29 @@ def faces_of(mesh: Mesh, flat: bool) -> Faces:
     return Faces(mesh.vertices, mesh.triangles, mesh.normals, tree, int(flat))
 
 
-def mesh_tracer(scene: Scene, settings: Settings, values: Chosen, plan: Plan, levels: Array,
-                lattice: Callable[[], Cells], cancel: Event | None = None) -> MeshTracer:
+def mesh_tracer(scene: Scene, settings: Settings, values: Chosen, cells: Cells, plan: Plan, levels: Array,
+                cancel: Event | None = None) -> MeshTracer:
     """What rays are sent through where the method is one of MESHES; the mesh is kept in the scene.
 
-    levels: fill levels; lattice: makes the neighbourhoods, which only an energy needs. Raises what `energy_mesh` and
+    cells, plan: neighbourhoods, and how a point is evaluated; levels: fill levels. Raises what `energy_mesh` and
     `level_mesh` do.
     """
     def make() -> Mesh:
         if values.method == "fill_level":
-            return level_mesh(levels, settings, values.level, spacing_of(scene))
-        return energy_mesh(lattice(), plan, settings, values.level, cancel=cancel)
+            return level_mesh(levels, settings, values.level, edges(scene))
+        energy = Energy(cells, plan, settings.energy, settings.emphasise)
+        return energy_mesh(energy, settings.subdivide, values.level, cancel=cancel)
 
     key, flat = (settings.key("rays"), values), settings.shading_normal == "gradient"
     mesh = scene.once("mesh", key, make)
-    return MeshTracer(mesh, scene.once("faces", (key, flat), lambda: faces_of(mesh, flat)), plan, lattice)
-
-
-def spacing_of(scene: Scene) -> tuple[float, float, float]:
-    """Edges of a lattice's cell along x, y, z in units of the longest."""
-    x, y, z = scene.spacing
-    longest = max(x, y, z)
-    return x / longest, y / longest, z / longest
+    return MeshTracer(cells, plan, mesh, scene.once("faces", (key, flat), lambda: faces_of(mesh, flat)))
 
 
 def warm_up(method: str, cells: Cells, plan: Plan) -> None:
     """Load or compile what a mesh of that method needs: to be made, of some small cells, and to be met by rays."""
     if method == "isosurface":
-        energy_field(cells, plan, "tangent", False, 1)
+        energy_field(Energy(cells, plan), 1)
+        energy_gradients(Energy(cells, plan), np.zeros((1, 3)))
     values = np.ones((2, 2, 2))
     values[0, 0, 0] = 0.0
     faces = faces_of(contour(values, 0.5), flat=False)

@@ -2,32 +2,36 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from threading import Event
 
 import numpy as np
 
 from jaart.core.contour import Mesh, contour
 from jaart.core.errors import SettingsError
-from jaart.core.field import energy_field
+from jaart.core.field import Energy, energy_field, energy_gradients
 from jaart.core.filters import filtered
-from jaart.core.kernels.records import Cells, Plan, Vector
-from jaart.core.scene import Array
+from jaart.core.kernels.records import Vector
+from jaart.core.scene import Array, frozen
 from jaart.core.settings import Settings
 
 
-def energy_mesh(cells: Cells, plan: Plan, settings: Settings, level: float, energy: str | None = None,
-                direction: Vector | None = None, threads: int | None = None, cancel: Event | None = None) -> Mesh:
+def energy_mesh(energy: Energy, divisions: int, level: float, threads: int | None = None,
+                cancel: Event | None = None) -> Mesh:
     """The shell around all points whose energy is below a level [T §2.4.6].
 
-    It has a sheet on each side of the points. cells, plan: as for rays; settings: energy, emphasise, subdivide; level:
-    as the energy; energy: in place of the settings', also tangent_step; direction: unit vector of that. Raises
-    SettingsError where the energy has no such level or would not fit into memory, Cancelled after cancel was set.
+    It has a sheet on each side of the points, and is open where no more surfels are near. divisions: samples along an
+    edge of a cell; level: as the energy. The normals are the energy's own gradient. Raises SettingsError where the
+    energy has no such level or would not fit into memory, Cancelled after cancel was set.
     """
-    name, divisions = energy or settings.energy, settings.subdivide
-    values = energy_field(cells, plan, name, settings.emphasise, divisions, direction, threads, cancel)
+    values, step = energy_field(energy, divisions, threads, cancel), 1.0 / divisions
     between = _between(values[np.isfinite(values)])
-    step = 1.0 / divisions
-    return _some(contour(values, level, step=(step, step, step)), level, name, between)
+    mesh = _some(contour(values, level, step=(step, step, step)), level, energy.name, between)
+    gradient = energy_gradients(energy, mesh.vertices, threads, cancel)
+    size = np.linalg.norm(gradient, axis=1, keepdims=True)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        normals = np.where((size > 0) & (size < np.inf), gradient / size, mesh.normals)
+    return replace(mesh, normals=frozen(normals))
 
 
 def level_mesh(levels: Array, settings: Settings, level: float, spacing: Vector = (1.0, 1.0, 1.0)) -> Mesh:

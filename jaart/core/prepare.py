@@ -23,7 +23,7 @@ from jaart.core.model import fill
 from jaart.core.scene import Array, Scene, frozen
 from jaart.core.settings import Settings
 from jaart.core.shapes import Solid
-from jaart.core.surfels import Surfels, make_surfels
+from jaart.core.surfels import Surfels, make_surfels, stretched_shape
 from jaart.core.tracers import LatticeTracer, Tracer
 
 __all__ = ["Prepared", "cells", "extent", "levels", "prepared", "raster", "solids", "surfels"]
@@ -63,7 +63,7 @@ def solids(scene: Scene, settings: Settings) -> tuple[Solid, ...] | None:
 def surfels(scene: Scene, settings: Settings) -> Surfels:
     """One surfel for each interface cell [T §3.1]. Raises FileError for a lattice without any."""
     def make() -> Surfels:
-        made = make_surfels(levels(scene, settings), settings)
+        made = make_surfels(levels(scene, settings), settings, extents.edges(scene))
         if not len(made):
             raise FileError(scene.source, _no_surface(made), "levels")
         return made
@@ -80,8 +80,8 @@ def _no_surface(found: Surfels) -> str:
 def cells(scene: Scene, settings: Settings, values: Chosen, cancel: Event | None = None) -> Cells:
     """The neighbourhoods of a lattice's cells and the field of empty space."""
     def make() -> Cells:
-        shape = levels(scene, settings).shape
-        return cell_table(surfels(scene, settings), (shape[0], shape[1], shape[2]), values, settings.k, cancel)
+        shape = stretched_shape(levels(scene, settings).shape, extents.edges(scene))
+        return cell_table(surfels(scene, settings), shape, values, settings.k, cancel)
 
     return scene.once("cells", (settings.key("neighbours"), values.radius), make)
 
@@ -91,8 +91,8 @@ def tracer(scene: Scene, settings: Settings, values: Chosen, cancel: Event | Non
     if scene.kind == "cloud":
         return cloud_tracer(scene, settings, values)
     if values.method in MESHES:
-        return mesh_tracer(scene, settings, values, plan_of(scene, settings, values), levels(scene, settings),
-                           lambda: cells(scene, settings, values, cancel), cancel)
+        return mesh_tracer(scene, settings, values, cells(scene, settings, values, cancel),
+                           plan_of(scene, settings, values), levels(scene, settings), cancel)
     if values.method == "cylinder":
         ball = settings.replace(neighbourhood="cell_ball")
         return cylinder_tracer(values, plan_of(scene, settings, values), lambda near: cells(scene, ball, near, cancel))

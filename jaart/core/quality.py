@@ -1,50 +1,71 @@
-"""How far a picture is from the exact solids: δ, δ_p and δ_n [T 3.4, 3.5]."""
+"""How far a picture is from the exact surface: δ, δ_p and δ_n [T 3.4, 3.5]."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core import prepare, shapes
+from jaart.core import extents, prepare, shapes
 from jaart.core.records import STATUS, Hits, Quality
 from jaart.core.scene import Scene, frozen
 
 Array = NDArray[np.float64]
 
-#: A hit farther than this (cells) from the exact one is a distance miss.
+#: A hit farther than this (cells, spacings of a cloud) from the exact one is a distance miss.
 TOO_FAR = 1.0
 #: A solid that ends on the lattice's faces is not cut off: cells that rounding may add.
 TOUCH = 1e-6
 
 
+def known(scene: Scene) -> bool:
+    """Whether a scene's surface is known exactly, by its solids or as it is."""
+    return scene.model is not None or scene.exact is not None
+
+
 def quality(hits: Hits, scene: Scene) -> Quality | None:
-    """The errors of hits against the scene's solids, or None when it has no exact ones.
+    """The errors of hits against the scene's exact surface, or None when nobody knows it.
 
     Each false hit, false miss and distance miss adds a penalty of 1 in place of its error. Normals are
     turned to the viewer first. Rays that cannot be traced (bad_ray), and those that meet a solid where the
-    lattice cuts it off, are left out.
+    lattice cuts it off, are left out. Lengths are in cells, of a cloud in mean spacings.
     """
-    solids = prepare.solids(scene, hits.settings)
-    if solids is None:
+    if not known(scene):
         return None
     good = np.flatnonzero(hits.status != STATUS["bad_ray"])
     exact_t, exact_normal = np.full(len(hits), np.nan), np.full((len(hits), 3), np.nan)
-    exact_t[good], exact_normal[good] = shapes.first_hit(solids, hits.origin[good], hits.direction[good])
-    met = hits.origin[good] + exact_t[good, None] * hits.direction[good]
-    beyond = ((met < -TOUCH) | (met > np.add(prepare.extent(scene, hits.settings), TOUCH))).any(axis=1)
+    exact_t[good], exact_normal[good] = _exact_hits(scene, hits, good)
     counted = np.ones(len(hits), bool)
-    counted[good[beyond]] = False
-    return against(hits, exact_t, exact_normal, counted)
+    if scene.model is not None:
+        counted[good[_cut_off(scene, hits, exact_t, good)]] = False
+    return against(hits, exact_t, exact_normal, counted, extents.spacing(scene))
 
 
-def against(hits: Hits, exact_t: Array, exact_normal: Array, counted: NDArray[np.bool_] | None = None) -> Quality:
+def _exact_hits(scene: Scene, hits: Hits, rays: NDArray[np.intp]) -> tuple[Array, Array]:
+    """First t (R,) of some of the rays on the exact surface, and its normals (R, 3)."""
+    solids = prepare.solids(scene, hits.settings)
+    if solids is not None:
+        return shapes.first_hit(solids, hits.origin[rays], hits.direction[rays])
+    assert scene.exact is not None
+    return scene.exact.hit(hits.origin[rays], hits.direction[rays])
+
+
+def _cut_off(scene: Scene, hits: Hits, exact_t: Array, rays: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Which of some rays meet a solid beyond the lattice."""
+    met = hits.origin[rays] + exact_t[rays, None] * hits.direction[rays]
+    beyond: NDArray[np.bool_] = (met < -TOUCH) | (met > np.add(extents.extent(scene, hits.settings), TOUCH))
+    return beyond.any(axis=1)
+
+
+def against(hits: Hits, exact_t: Array, exact_normal: Array, counted: NDArray[np.bool_] | None = None,
+            unit: float = 1.0) -> Quality:
     """The errors of hits against exact ones.
 
-    exact_t: (R,), NaN = no hit; exact_normal: (R, 3), unit length; counted: (R,) which rays matter, all when None.
+    exact_t: (R,), NaN = no hit; exact_normal: (R, 3), unit length; counted: (R,) which rays matter, all when None;
+    unit: what lengths are counted in, the size of a cell or the spacing of a cloud.
     """
     counted = np.ones(len(hits), bool) if counted is None else counted
     hit, exact = hits.hit & counted, np.isfinite(exact_t) & counted
-    distance = np.where(hit & exact, np.abs(hits.t - exact_t), np.nan)
+    distance = np.where(hit & exact, np.abs(hits.t - exact_t) / unit, np.nan)
     both = np.flatnonzero(hit & exact)
     normal = turned(hits.normal[both], hits.direction[both])
     expected = turned(exact_normal[both], hits.direction[both])

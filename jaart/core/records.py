@@ -94,7 +94,9 @@ class Trace:
     step_cell: cell (S, 3) whose neighbourhood was used; outcome: name of the state that the step led
     to ("continue" while the search went on); neighbours: indices into surfels; weights: the same
     length, normalised to sum 1.
-    cells: (C, 3) crossed by the ray; borders: (C + 1,) the t where it crosses into each; with_surfel: (C,).
+    cells: (C, 3) crossed by the ray; borders: (C + 1,) the t where it crosses into each; with_surfel: (C,);
+    balls: (B, 4) centre and radius of a cloud's balls that it pierces, in order. A lattice has no balls, a cloud
+    no cells; there step_cell begins with the ball's number among these, or -1. low, high: (3,) corners of the scene.
     """
 
     origin: Array
@@ -120,11 +122,19 @@ class Trace:
     cells: Ints
     borders: Array
     with_surfel: NDArray[np.bool_]
+    balls: Array
     surfels: Surfels | Points
     curves: Curves
     settings: Settings
-    extent: tuple[float, float, float]
+    low: Array
+    high: Array
     pixel: tuple[int, int] | None = None
+
+    @property
+    def extent(self) -> tuple[float, float, float]:
+        """Size of the scene along x, y, z."""
+        x, y, z = (self.high - self.low).tolist()
+        return x, y, z
 
     @property
     def steps(self) -> int:
@@ -144,11 +154,11 @@ class Trace:
 
 @dataclass(frozen=True, eq=False)
 class Quality:
-    """Errors of a picture against the exact solids [T 3.4, 3.5], lengths in cells.
+    """Errors of a picture against the exact surface [T 3.4, 3.5], lengths in cells, of a cloud in mean spacings.
 
     delta, delta_p, delta_n: NaN when no ray is relevant; relevant: rays that do not correctly show
     background; false_hit, false_miss, distance_miss: counts; distance, angle: for each ray, NaN where
-    either is missing: |p_r - p_e| in cells and the angle of the normals in degrees.
+    either is missing: |p_r - p_e| and the angle of the normals in degrees.
     """
 
     delta: float

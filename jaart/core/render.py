@@ -11,7 +11,7 @@ from threading import Event
 
 import numpy as np
 
-from jaart.core import memory, prepare
+from jaart.core import extents, memory, prepare
 from jaart.core.camera import Camera, check_size
 from jaart.core.errors import Cancelled, RayError
 from jaart.core.kernels.pinhole import View, write_rays
@@ -19,7 +19,7 @@ from jaart.core.kernels.records import Out
 from jaart.core.prepare import Prepared
 from jaart.core.records import Array, Hits
 from jaart.core.scene import Scene
-from jaart.core.settings import Settings
+from jaart.core.settings import Settings, preset
 from jaart.core.tiles import Pixels, coarse_passes, columns_for, tiles
 from jaart.core.warm import warm_up
 
@@ -35,14 +35,15 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
            picture: Callable[[Hits], None] | None = None, any_hit: bool = False) -> Hits:
     """Where every ray of a picture meets the surface.
 
-    camera: the whole scene in view when None; size: (width, height); rays: origins and directions (R, 3)
-    in cells instead of a camera, directions of any length; threads: as many as the machine has when None;
+    settings: those of the preset "best" when None; camera: the whole scene in view when None; size: (width,
+    height); rays: origins and directions (R, 3) in cells or cloud units instead of a camera, directions of any
+    length; threads: as many as the machine has when None;
     progress(done, all rays) is called from the caller's thread; cancel: set it to stop;
     picture: called with coarse pictures, every 8th, 4th and 2nd pixel, while the work goes on; any_hit: one that
     is found sooner will do for the first, as shadows need.
     Raises RayError for a picture or rays that cannot be, Cancelled after cancel was set.
     """
-    settings = settings or Settings()
+    settings = settings or preset("best")
     job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays, any_hit)
     warm_up(scene, settings)
     ready = prepare.prepared(scene, settings, cancel)
@@ -102,7 +103,7 @@ class _Watch:
 
 def _camera_job(scene: Scene, settings: Settings, camera: Camera | None, size: Size) -> _Job:
     check_size(size)
-    camera = camera or Camera.fit(prepare.extent(scene, settings), size=size)
+    camera = camera or Camera.fit(extents.bounds(scene, settings), size=size)
     count = size[0] * size[1]
     if count * _BYTES_A_RAY > memory.limit():
         raise RayError(f"size {size[0]}x{size[1]}: needs {memory.words(count * _BYTES_A_RAY)} of memory, more than the "

@@ -13,6 +13,8 @@ from jaart.core.scene import Array, Scene, frozen
 
 #: Points of the built-in cloud; as many as the Rabbit of [A §6] has.
 COUNT = 67_038
+#: Directions at which the surface's bend is bounded; no other is farther than 4/sqrt of it from all of them.
+BOUND_AT = 4000
 #: A height that counts as 0, in radii: what is left when it is computed on the surface.
 ROUNDING = 1e-15
 #: Where the height falls more slowly along a ray, the ray grazes: ROUNDING/GRAZING is all that can be said of t.
@@ -113,10 +115,14 @@ class BumpySphere:
     def _bend(self) -> float:
         """A bound on the second derivative of the height along any line outside of the inner ball.
 
-        |x| gives 1/|x|; a bump gives at most (2k/e + 2k) · height / |x|², k its sharpness: with w = 1 - cos(angle)
-        its gradient squared is k² · 2w · exp(-kw), at most 2k/e, and its other part at most 2k.
+        |x| gives 1/|x|; a bump gives at most k(2kw + 2) exp(-kw) · height · radius / |x|², k its sharpness and
+        w = 1 - cos(angle) the distance from its middle, with which that falls. So the sum is largest at one of
+        many directions, each taken as near to the bumps as its neighbours reach.
         """
-        bumps = (np.abs(self.heights) * self.sharpness).sum() * (2 / math.e + 2)
+        around = fibonacci(BOUND_AT)
+        angle = np.arccos(np.clip(around @ self.centres.T, -1, 1)) - 4 / math.sqrt(BOUND_AT)
+        kw = self.sharpness * (1 - np.cos(np.maximum(angle, 0)))
+        bumps = (np.abs(self.heights) * self.sharpness * (2 * kw + 2) * np.exp(-kw)).sum(axis=1).max()
         return 1 / self.inner + self.radius * float(bumps) / self.inner**2
 
     def _radius_and_slope(self, u: Array) -> tuple[Array, Array]:
@@ -156,7 +162,8 @@ def standard_bumps() -> BumpySphere:
 
 def bumpy_sphere(count: int = COUNT) -> Scene:
     """The built-in cloud "bumpy": points alone, on `standard_bumps` to the last bits, along `fibonacci` directions."""
-    return Scene("bumpy", points=frozen(standard_bumps().points_along(fibonacci(count))))
+    surface = standard_bumps()
+    return Scene("bumpy", points=frozen(surface.points_along(fibonacci(count))), exact=surface)
 
 
 def unit(vectors: Array) -> Array:

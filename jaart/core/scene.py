@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,13 @@ class Model:
     raster: int
 
 
+class Exact(Protocol):
+    """A surface that is known exactly."""
+
+    def hit(self, origins: Array, directions: Array) -> tuple[Array, Array]:
+        """First t > 0 (R,) of rays (R, 3) and the unit normals (R, 3) there, outwards; NaN where a ray misses."""
+
+
 @dataclass(frozen=True, eq=False)
 class Scene:
     """One scene, frozen; what it costs to derive is kept in it (see `once`).
@@ -51,7 +58,7 @@ class Scene:
     source: path or built-in name; spacing, origin: physical size of a cell and corner of the lattice,
     for display and export (lengths are in cells elsewhere); frame, frames: which of a series; time:
     its time in seconds; merged: exact duplicates of points left out; notes: what was repaired or left out
-    on reading.
+    on reading; exact: the surface that a cloud's points lie on, where it is known.
     Raises FileError for anything else.
     """
 
@@ -67,6 +74,7 @@ class Scene:
     time: float | None = None
     merged: int = 0
     notes: tuple[str, ...] = ()
+    exact: Exact | None = None
     _kept: dict[Hashable, Any] = field(default_factory=dict, init=False, repr=False)
     _lock: Any = field(default_factory=threading.RLock, init=False, repr=False)
 

@@ -42,7 +42,8 @@ PARAMETERS: dict[str, Parameter] = declared(Settings)
 
 #: Whole sets of values by name; "best" follows the project's measurements, "thesis" its source.
 PRESETS: dict[str, Mapping[str, Any]] = {
-    "best": {},
+    "best": {"method": "polynomial", "degree": 2, "patch": 1.0, "search": "secant", "tolerance": 0.01,
+             "placement": "exact", "gradient": "youngs"},
     "thesis": {"method": "tangent", "search": "iterate", "weight": "gaussian", "h": 0.8, "normal": "surfel",
                "neighbourhood": "cell_ball", "radius": 2.0, "placement": "box", "gradient": "central",
                "traversal": "exact", "tolerance": 0.125, "max_off_centre": 0.3, "max_iterations": 20,

@@ -44,8 +44,9 @@ class Statistics:
 
     rays, hits: counts; status: rays by end state; iterations: steps of the last start, of the rays
     that hit; evaluations: steps of all starts, of the rays that evaluated anything; cells: cells
-    visited, of the rays that visited any; neighbours: surfels an evaluation, on average (NaN without
-    one); prep_s, ray_s: wall seconds; quality: errors against the exact solids if known.
+    or balls visited, of the rays that visited any; neighbours: surfels an evaluation, on average (NaN without
+    one); prep_s, ray_s: wall seconds; quality: errors against the exact surface if known; lowered: evaluations whose
+    polynomial has fewer degrees than asked for.
     """
 
     rays: int
@@ -58,6 +59,7 @@ class Statistics:
     prep_s: float
     ray_s: float
     quality: Quality | None = None
+    lowered: int = 0
 
 
 def statistics(hits: Hits, quality: Quality | None = None) -> Statistics:
@@ -67,6 +69,7 @@ def statistics(hits: Hits, quality: Quality | None = None) -> Statistics:
         rays=len(hits), hits=int(hits.hit.sum()), status=hits.counts(),
         iterations=_histogram(hits.iterations[hits.hit]), evaluations=_histogram(hits.evaluations),
         cells=_histogram(hits.cells), prep_s=hits.prep_s, ray_s=hits.ray_s, quality=quality,
+        lowered=int(hits.lowered.sum()),
         neighbours=float(hits.neighbours.sum()) / evaluations if evaluations else float("nan"))
 
 
@@ -76,6 +79,7 @@ def table(statistics: Statistics) -> list[Row]:
     rows: list[Row] = [("statistic", "bin", "value"), ("rays", "", s.rays), ("hits", "", s.hits),
                        ("mean iterations", "", s.iterations.mean), ("mean evaluations", "", s.evaluations.mean),
                        ("mean cells", "", s.cells.mean), ("mean neighbours", "", s.neighbours),
+                       ("evaluations of a lower degree", "", s.lowered),
                        ("preparation [s]", "", s.prep_s), ("rays [s]", "", s.ray_s)]
     rows += [("end state", name, count) for name, count in s.status.items()]
     for name in ("iterations", "evaluations", "cells"):

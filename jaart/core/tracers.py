@@ -21,11 +21,20 @@ NO_LOG = np.empty((0, LOG_WIDTH))
 class Tracer(Protocol):
     """A scene that rays can be sent through."""
 
-    plan: Plan
+    @property
+    def plan(self) -> Plan:
+        """How a point is evaluated and a ray searched."""
 
     @property
     def sites(self) -> Sites:
         """The places with the surfels near each."""
+
+    @property
+    def offset(self) -> Array:
+        """Origin (3,) of the frame that places are in."""
+
+    def scratch(self) -> tuple[Array, Array]:
+        """Room for the weights and fits of the place with the most surfels, for one thread."""
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
               any_hit: bool = False) -> int:
@@ -36,10 +45,10 @@ class Tracer(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class LatticeTracer:
-    """A lattice of surfels.
+class OnLattice:
+    """What tracers of a lattice have in common.
 
-    cells: their neighbourhoods; plan: how they are searched.
+    cells: the surfels' neighbourhoods; plan: how a point is evaluated and a ray searched.
     """
 
     cells: Cells
@@ -50,14 +59,25 @@ class LatticeTracer:
         """The cells with the surfels near each."""
         return self.cells.sites
 
+    @property
+    def offset(self) -> Array:
+        """A lattice is computed in its own frame."""
+        return np.zeros(3)
+
+    def scratch(self) -> tuple[Array, Array]:
+        """Room for the weights and fits of the cell with the most surfels."""
+        return scratch(int(np.diff(self.cells.sites.first).max(initial=0)))
+
+
+class LatticeTracer(OnLattice):
+    """A lattice of surfels whose surface each ray searches."""
+
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
               any_hit: bool = False) -> int:
         """Trace some rays into their rows of the columns; see `Tracer`."""
-        work, fit = scratch(self.cells.sites)
-        return int(ray.trace_rays(self.cells, self.plan, origins, directions, pixels, out, log, work, fit))
+        return int(ray.trace_rays(self.cells, self.plan, origins, directions, pixels, out, log, *self.scratch()))
 
 
-def scratch(sites: Sites) -> tuple[Array, Array]:
-    """Room for the weights and fits of the place with the most surfels, for one thread."""
-    most = int(np.diff(sites.first).max(initial=0))
+def scratch(most: int) -> tuple[Array, Array]:
+    """Room for the weights and fits of so many surfels, for one thread."""
     return np.empty(SCRATCH_A_SURFEL * max(most, 1)), np.zeros(FIT_SIZE)

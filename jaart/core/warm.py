@@ -12,11 +12,14 @@ import threading
 import numpy as np
 
 from jaart.core import assemble, cylinder, meaning, mesh_tracer
+from jaart.core.balls import CloudTracer
 from jaart.core.cell_table import cell_table
 from jaart.core.chosen import Chosen, chosen
+from jaart.core.cloud_surfels import cloud_of
 from jaart.core.groups.surface import MESHES
 from jaart.core.kernels import energies, jit, pinhole, ray, traversal
 from jaart.core.kernels.records import LOG_WIDTH, Cells, Plan
+from jaart.core.parameter import Length
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings
 from jaart.core.surfels import Surfels
@@ -41,7 +44,7 @@ def warm_up(scene: Scene, settings: Settings, tracing: bool = False) -> Chosen:
     values = meaning.check(scene, settings)
     with _LOCK:
         _camera()
-        _lattice()
+        (_cloud if scene.kind == "cloud" else _lattice)()
         if tracing:
             _tracing()
         assemble.plan_of(scene, settings, values)
@@ -71,7 +74,17 @@ def _small() -> tuple[Cells, Plan]:
 def _lattice() -> None:
     cells, plan = _small()
     ray.trace_rays(cells, plan, np.array([_O]), np.array([_D]), np.zeros(1, np.int64), columns_for(1),
-                   np.empty((2, LOG_WIDTH)), *scratch(cells.sites))
+                   np.empty((2, LOG_WIDTH)), *scratch(2))
+
+
+@functools.cache
+def _cloud() -> None:
+    """Eight points on a plane, seen once from above: promises, lists and a search."""
+    points = np.array([(x, y, 0.1 * x * y) for x in (0.0, 1.0, 2.0) for y in (0.0, 1.0, 2.0)])
+    scene = Scene("small", points=points, normals=np.tile((0.0, 0.0, 1.0), (9, 1)))
+    settings = Settings(h=Length(1.0))
+    made = CloudTracer(cloud_of(scene, settings, chosen(scene, settings)), _small()[1], False, True)
+    made.trace(np.array([_O]), np.array([_D]), np.zeros(1, np.int64), columns_for(1), np.empty((2, LOG_WIDTH)))
 
 
 @functools.cache
@@ -79,5 +92,5 @@ def _tracing() -> None:
     cells, plan = _small()
     traversal.crossed(np.array(_O), np.array(_D), (3, 4, 3), np.empty((13, 3), np.int32), np.empty(14))
     energies.sample(cells.sites, plan, _O, _D, np.array([7.5]), np.array([[1, 1, 1]]), np.empty((4, 1)),
-                    *scratch(cells.sites))
+                    *scratch(2))
     energies.write_weights(cells.sites, (1, 1, 1), (0.0, 0.0, 0.0), plan.rule, np.empty(4))

@@ -15,7 +15,7 @@ from jaart.gui.navigation import VIEWS
 if TYPE_CHECKING:
     from jaart.gui.main_window import MainWindow
 
-SAMPLES = {"Splash": "splash", "Standard model": "standard"}
+SAMPLES = {"Splash": "splash", "Standard model": "standard", "Bumpy sphere (points)": "bumpy"}
 SIZES = (256, 512, 768, 1024)
 ABOUT = ("Jaart shows point-based surfaces of fill levels by ray tracing, without a mesh. "
          "Click a pixel to see, step by step, how its ray found the surface.")

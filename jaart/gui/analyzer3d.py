@@ -1,4 +1,4 @@
-"""The chosen step of the picked ray in space: cells, surfels, plane, barycentre, query and next point."""
+"""The chosen step of the picked ray in space: cells or balls, surfels, plane, barycentre, query and next point."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from qtpy.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QToolButton, QVB
 from jaart.gui.model import SceneModel
 from jaart.gui.panel import Panel, step_by_key
 from jaart.plot.glyphs import Mesh
+from jaart.plot.scale import no_steps
 from jaart.plot.scene3d import PARTS, Up, step_meshes, view
-from jaart.plot.style import NO_STEPS, THEMES
+from jaart.plot.style import THEMES
 
 if TYPE_CHECKING:
     from pyvista import PolyData
@@ -74,7 +75,7 @@ class Analyzer3D(Panel):
             return
         trace = self.model.trace
         if trace is None or not trace.steps:
-            self._say(_MESSAGE if trace is None else NO_STEPS)
+            self._say(_MESSAGE if trace is None else no_steps(trace))
             return
         if self._view is None:
             self._make()

@@ -7,6 +7,7 @@ from qtpy.QtGui import QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QR
 from qtpy.QtWidgets import QApplication, QWidget
 
 from jaart.core.camera import Camera
+from jaart.core.picture import plain
 from jaart.core.shade import shade
 from jaart.gui import navigation, overlay, theme
 from jaart.gui.model import SceneModel
@@ -36,7 +37,8 @@ class ImageView(QWidget):
         self._start: Camera | None = None
         self._still = QTimer(self, singleShot=True, interval=150)
         self._still.timeout.connect(self._settle)
-        for signal in (model.hits_changed, model.map_changed, model.theme_changed, model.settings_changed):
+        for signal in (model.hits_changed, model.map_changed, model.theme_changed, model.settings_changed,
+                       model.shader.changed):
             signal.connect(self.refresh)
         model.picked_changed.connect(self.update)
 
@@ -50,7 +52,9 @@ class ImageView(QWidget):
         if hits is None:
             self.image = QImage()
         elif model.quality is not None or not model.map.endswith("_error") or not self._was_exact():
-            pixels = shade(hits, model.map, model.quality, model.theme, model.settings)
+            pixels = model.shader.colours
+            if pixels is None:
+                pixels = shade(hits, model.map, model.quality, model.theme, plain(model.settings))
             height, width = pixels.shape[:2]
             self.image = QImage(pixels.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
         self.update()
@@ -84,12 +88,12 @@ class ImageView(QWidget):
         camera = self.model.camera
         if camera is not None:
             towards = -camera.frame()[2]
-            fitted = Camera.fit(self.model.extent, (towards[0], towards[1], towards[2]), camera.fov)
+            fitted = navigation.fit(self.model.bounds, (towards[0], towards[1], towards[2]), camera.fov)
             self.model.set_camera(fitted.replace(up=camera.up))
 
     def look_from(self, name: str) -> None:
         """See the whole scene from a standard direction."""
-        self.model.set_camera(navigation.view(self.model.extent, name))
+        self.model.set_camera(navigation.view(self.model.bounds, name))
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw the picture and what lies over it."""
@@ -113,12 +117,12 @@ class ImageView(QWidget):
             overlay.draw_mark(painter, self.place_of(model.picked), model.theme)
         if hits is None:
             return
-        overlay.draw_scale(painter, self.rect(), model.map, hits, model.quality, model.theme)
+        overlay.draw_scale(painter, self.rect(), model.map, hits, model.quality, model.theme, model.kind)
         if self.hovered is not None and model.complete and self._pressed is None:
             corner = QPointF(10, 10)
             if self.place_of(self.hovered).x() < 300 and self.place_of(self.hovered).y() < 200:
                 corner = QPointF(10, self.height() - 190)
-            rows = overlay.numbers(hits, model.quality, *self.hovered)
+            rows = overlay.numbers(hits, model.quality, *self.hovered, model.kind)
             overlay.draw_lens(painter, corner, self.image, self.hovered, rows, model.theme)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:

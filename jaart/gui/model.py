@@ -7,14 +7,17 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from qtpy.QtCore import QObject, Signal
+from qtpy.QtCore import QObject, QTimer, Signal
 
 from jaart.core.camera import Camera
 from jaart.core.records import Hits, Quality, Trace
 from jaart.core.scene import Scene
-from jaart.core.settings import Settings
-from jaart.gui import tasks
-from jaart.gui.tasks import Extent
+from jaart.core.settings import PRESETS, Settings, preset
+from jaart.gui import navigation, tasks
+from jaart.gui.navigation import Bounds
+from jaart.gui.shader import Shader
+from jaart.gui.suit import refused_name, suited
+from jaart.gui.tasks import Known, Made, Opened
 from jaart.gui.worker import Worker
 
 if TYPE_CHECKING:
@@ -22,6 +25,9 @@ if TYPE_CHECKING:
 
 #: While the camera is dragged, pictures are made smaller until one takes about this long [s].
 DRAG_SECONDS = 0.03
+
+#: When a job has shown nothing for so long, it is told what it does [ms].
+PATIENCE_MS = 500
 
 #: Size of a picture in pixels when nobody says.
 PICTURE = (512, 512)
@@ -31,7 +37,8 @@ class SceneModel(QObject):
     """Scene, settings, camera, picture, picked ray and theme, and the work that follows their changes.
 
     Pixels (x, y) count from the top left of the full picture of `size` (width, height). Files are
-    read, and pictures and traces made, in a worker thread; results arrive as signals.
+    read, and pictures and traces made, in a worker thread; results arrive as signals. Settings that make no sense in
+    the scene leave the last picture; `fault` holds the setting that is refused and why.
     """
 
     scene_changed = Signal()
@@ -46,6 +53,8 @@ class SceneModel(QObject):
     progressed = Signal(float)
     settled = Signal()
     failed = Signal(str)
+    fault_changed = Signal()
+    known_changed = Signal()
     said = Signal(str)
 
     def __init__(self, parent: QObject | None = None) -> None:
@@ -53,7 +62,10 @@ class SceneModel(QObject):
         self.scene: Scene | None = None
         self.settings = Settings()
         self.camera: Camera | None = None
-        self.extent: Extent = (1.0, 1.0, 1.0)
+        self.bounds: Bounds = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+        self.preset = next(iter(PRESETS))
+        self.known: Known | None = None
+        self.fault: tuple[str, str] | None = None
         self.size = PICTURE
         self.hits: Hits | None = None
         self.quality: Quality | None = None
@@ -63,11 +75,18 @@ class SceneModel(QObject):
         self.step = 0
         self.theme = "light"
         self._worker, self._painter = Worker(self), Worker(self)
+        self.shader = Shader(self)
+        self._slow = QTimer(self, singleShot=True, interval=PATIENCE_MS)
+        self._slow.timeout.connect(self._say_preparing)
         self._painter.failed.connect(self.failed)
-        self._worker.progressed.connect(self.progressed)
-        self._worker.failed.connect(self.failed)
-        self._worker.said.connect(self.said)
-        self._worker.ended.connect(self.settled)
+        for worker in (self._worker, self.shader.worker):
+            worker.progressed.connect(self.progressed)
+            worker.failed.connect(self.failed)
+            worker.refused.connect(self._refuse)
+            worker.said.connect(self.said)
+            worker.ended.connect(self._ended)
+        self._worker.said.connect(self._slow.stop)
+        self._notes: tuple[str, ...] = ()
 
     @property
     def idle(self) -> bool:
@@ -76,8 +95,13 @@ class SceneModel(QObject):
 
     @property
     def computing(self) -> bool:
-        """Whether something is being read, rendered or traced."""
-        return not self._worker.idle
+        """Whether something is being read, rendered, traced or shaded."""
+        return not (self._worker.idle and self.shader.worker.idle)
+
+    @property
+    def kind(self) -> str:
+        """Kind of the scene, a lattice while there is none."""
+        return "lattice" if self.scene is None else self.scene.kind
 
     @property
     def complete(self) -> bool:
@@ -86,10 +110,26 @@ class SceneModel(QObject):
 
     def open(self, source: str | PathLike[str], frame: int | None = None, camera: Camera | None = None) -> None:
         """Read a scene; when it cannot be read, `failed` says why and the old scene stays."""
-        settings = self.settings
+        settings, base, before = self.settings, preset(self.preset), self.scene
         self.said.emit(f"Reading {source} …")
-        self._worker.submit("open", lambda job: tasks.read(source, frame, settings),
-                            lambda read: self._opened(*read, camera))
+        self._worker.submit("open", lambda job: tasks.read(source, frame, settings, base, before),
+                            lambda opened: self._opened(opened, camera))
+
+    def choose_preset(self, name: str) -> None:
+        """Take a preset's values; those that make no sense in the scene are replaced, and `said` says so."""
+        self.preset, values, scene = name, preset(name), self.scene
+        if scene is None:
+            self.set_settings(values)
+            return
+        self._worker.cancel("picture")
+        self._worker.submit("open", lambda job: suited(scene, values, values), lambda made: self._take(*made))
+
+    def _take(self, settings: Settings, changed: str) -> None:
+        if settings == self.settings:
+            self._render()  # what was under way was stopped
+        self.set_settings(settings)
+        if changed:
+            self.said.emit(changed)
 
     def set_value(self, name: str, value: Any) -> None:
         """Change one setting. Raises SettingsError when it cannot take the value."""
@@ -100,10 +140,13 @@ class SceneModel(QObject):
         old, self.settings = self.settings, settings
         if settings == old:
             return
+        self.preset = next((name for name in PRESETS if preset(name) == settings), self.preset)
+        refused = self.fault is not None
+        self._set_fault(None)
         if self.hits is not None:
             self.hits = _with_settings(self.hits, settings)
         self.settings_changed.emit()
-        if self.scene is not None and settings.key("rays") != old.key("rays"):
+        if self.scene is not None and (refused or settings.key("rays") != old.key("rays")):
             self._keep_view()
             self._render()
         elif settings.key("trace") != old.key("trace"):
@@ -166,39 +209,40 @@ class SceneModel(QObject):
 
     def close(self) -> None:
         """Cancel what runs and end the threads."""
-        self._worker.stop()
-        self._painter.stop()
+        for worker in (self._worker, self._painter, self.shader.worker):
+            worker.stop()
 
-    def _opened(self, scene: Scene, extent: Extent, camera: Camera | None) -> None:
-        same = self.scene is not None and self.scene.source == scene.source and self.extent == extent
+    def _opened(self, opened: Opened, camera: Camera | None) -> None:
+        scene, bounds = opened.scene, opened.bounds
+        same = self.scene is not None and self.scene.source == scene.source and self.bounds == bounds
         for kind in ("picture", "trace"):
             self._worker.cancel(kind)
-        self.scene, self.extent = scene, extent
+        self.scene, self.bounds, self.known, self._notes = scene, bounds, None, ()
+        self._set_fault(None)
         self.hits = self.quality = self.trace = None
         self.step = 0
         if not same:
             self.picked = None
         if camera is not None or self.camera is None or not same:
-            self.camera = camera or Camera.fit(extent)
+            self.camera = camera or navigation.view(bounds, "Default")
+        if opened.settings != self.settings:
+            self.settings = opened.settings
+            self.settings_changed.emit()
         for signal in (self.scene_changed, self.camera_changed, self.hits_changed, self.picked_changed,
                        self.trace_changed):
             signal.emit()
-        for note in scene.notes:
-            self.said.emit(note)
+        for note in (*scene.notes, opened.changed):
+            if note:
+                self.said.emit(note)
         self._render()
 
     def _keep_view(self) -> None:
         """Follow a scene whose raster changed, so that it is seen as before."""
-        from jaart.core.prepare import extent
-
         assert self.scene is not None
         assert self.camera is not None
-        old, self.extent = self.extent, extent(self.scene, self.settings)
-        if old != self.extent:
-            scale = np.asarray(self.extent) / np.asarray(old)
-            width = None if self.camera.ortho is None else self.camera.ortho * float(scale.mean())
-            self.camera = self.camera.replace(eye=tuple(self.camera.eye * scale), ortho=width,
-                                              target=tuple(self.camera.target * scale))
+        old, self.bounds = self.bounds, tasks.bounds(self.scene, self.settings)
+        if old != self.bounds:
+            self.camera = navigation.rescaled(self.camera, old, self.bounds)
             self.camera_changed.emit()
 
     def _render(self, dragging: bool = False) -> None:
@@ -206,16 +250,27 @@ class SceneModel(QObject):
             return
         scene, settings, camera = self.scene, self.settings, self.camera
         size = self._drag_size() if dragging else self.size
+        self._slow.start()
         self._worker.submit("picture", lambda job: tasks.picture(job, scene, settings, camera, size, dragging),
-                            lambda made: self._show(*made), lambda hits: self._show(hits, None),
-                            brief=dragging)
+                            self._made, lambda hits: self._show(hits, None), brief=dragging)
 
     def _drag_size(self) -> tuple[int, int]:
         seconds = 0.0 if self.hits is None else self.hits.ray_s / len(self.hits) * self.size[0] * self.size[1]
         factor = next((f for f in (1, 2, 4) if seconds / f**2 <= DRAG_SECONDS), 8)
         return -(-self.size[0] // factor), -(-self.size[1] // factor)
 
+    def _made(self, made: Made) -> None:
+        if made.known != self.known:
+            self.known = made.known
+            self.known_changed.emit()
+        self._show(made.hits, made.quality)
+        if made.notes != self._notes:
+            self._notes = made.notes
+            for note in made.notes:
+                self.said.emit(note)
+
     def _show(self, hits: Hits, quality: Quality | None) -> None:
+        self._slow.stop()
         self.hits, self.quality = _with_settings(hits, self.settings), quality
         self.hits_changed.emit()
         if self.complete:
@@ -223,7 +278,7 @@ class SceneModel(QObject):
             self._trace()
 
     def _trace(self) -> None:
-        if self.scene is None or self.camera is None or self.picked is None:
+        if self.scene is None or self.camera is None or self.picked is None or self.fault is not None:
             return
         scene, settings, camera, size, pixel = self.scene, self.settings, self.camera, self.size, self.picked
         self._worker.submit("trace", lambda job: tasks.ray(scene, settings, camera, size, pixel), self._traced,
@@ -234,6 +289,31 @@ class SceneModel(QObject):
         self.trace = trace
         self.step = min(self.step, max(trace.steps - 1, 0)) if same else first_of_last_start(trace)
         self.trace_changed.emit()
+
+    def _say_preparing(self) -> None:
+        """A picture is late: its points are prepared, or a kernel is compiled that was never used before."""
+        if not self._worker.idle and self.scene is not None:
+            points = self.scene.points
+            what = "the scene" if points is None else f"{len(points):,} points"
+            self.said.emit(f"Preparing {what} …")
+
+    def _refuse(self, message: str) -> None:
+        """The core refused the settings: keep what is shown, mark the setting, and say why once."""
+        told = self.fault
+        self._slow.stop()
+        self._set_fault((refused_name(message), message))
+        if self.fault != told:
+            self.failed.emit(message)
+
+    def _set_fault(self, fault: tuple[str, str] | None) -> None:
+        if fault != self.fault:
+            self.fault = fault
+            self.fault_changed.emit()
+
+    def _ended(self) -> None:
+        if not self.computing:
+            self._slow.stop()
+            self.settled.emit()
 
 
 def first_of_last_start(trace: Trace) -> int:

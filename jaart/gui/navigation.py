@@ -8,6 +8,9 @@ import numpy as np
 
 from jaart.core.camera import DEFAULT_VIEW, Camera, Vector
 
+#: Lowest and highest corner of a scene.
+Bounds = tuple[Vector, Vector]
+
 #: Directions from the middle of the scene towards the eye.
 VIEWS: dict[str, Vector] = {
     "Default": DEFAULT_VIEW, "Front": (0, -1, 0), "Back": (0, 1, 0), "Left": (-1, 0, 0), "Right": (1, 0, 0),
@@ -54,6 +57,18 @@ def width(camera: Camera) -> float:
     return 2 * distance * math.tan(math.radians(camera.fov) / 2)
 
 
-def view(extent: Vector, name: str) -> Camera:
-    """The whole scene seen from a standard direction of VIEWS."""
-    return Camera.fit(extent, VIEWS[name])
+def view(bounds: Bounds, name: str) -> Camera:
+    """The whole scene, from its lowest to its highest corner, seen from a standard direction of VIEWS."""
+    return fit(bounds, VIEWS[name])
+
+
+def fit(bounds: Bounds, towards: Vector, fov: float = 30.0) -> Camera:
+    """The whole scene seen from a direction, from its middle towards the eye. fov: degrees."""
+    return Camera.fit((np.array(bounds[0]), np.array(bounds[1])), towards, fov)
+
+
+def rescaled(camera: Camera, old: Bounds, new: Bounds) -> Camera:
+    """The camera that sees a scene of new corners as the old one was seen; both begin at the same corner."""
+    scale = np.subtract(new[1], new[0]) / np.subtract(old[1], old[0])
+    width = None if camera.ortho is None else camera.ortho * float(scale.mean())
+    return camera.replace(eye=tuple(camera.eye * scale), ortho=width, target=tuple(camera.target * scale))

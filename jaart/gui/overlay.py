@@ -8,7 +8,7 @@ import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QFontMetrics, QImage, QPainter, QPen
 
-from jaart.core.maps import MAPS, scale
+from jaart.core.maps import MAPS, scale, unit
 from jaart.core.records import STATUS_NAMES, Hits, Quality
 from jaart.core.shade import BACKGROUND, COLOURS, TABLE
 from jaart.gui import theme as look
@@ -28,16 +28,20 @@ def draw_mark(painter: QPainter, at: QPointF, theme: str) -> None:
             painter.drawLine(at + QPointF(6 * dx, 6 * dy), at + QPointF(15 * dx, 15 * dy))
 
 
-def draw_scale(painter: QPainter, area: QRect, name: str, hits: Hits, quality: Quality | None, theme: str) -> None:
-    """The colours of a map at the right edge of an area: a bar with units, or a legend of the states."""
+def draw_scale(painter: QPainter, area: QRect, name: str, hits: Hits, quality: Quality | None, theme: str,
+               kind: str = "lattice") -> None:
+    """The colours of a map at the right edge of an area: a bar with units, or a legend of the states.
+
+    kind: of the scene.
+    """
     if name == "status":
         _draw_states(painter, area, hits, theme)
     elif name != "shaded":
-        _draw_bar(painter, area, name, scale(name, hits, quality), theme)
+        _draw_bar(painter, area, (MAPS[name].label, unit(name, kind)), scale(name, hits, quality), theme)
 
 
-def _draw_bar(painter: QPainter, area: QRect, name: str, limits: tuple[float, float], theme: str) -> None:
-    about, (low, high) = MAPS[name], limits
+def _draw_bar(painter: QPainter, area: QRect, name: tuple[str, str], limits: tuple[float, float], theme: str) -> None:
+    (label, of), (low, high) = name, limits
     left, top, height = area.right() - COLUMN + 20, area.top() + 48, max(60, area.height() - 72)
     colours = np.ascontiguousarray(TABLE[::-1])[:, None, :].copy()
     strip = QImage(colours.data, 1, len(TABLE), 3, QImage.Format.Format_RGB888)
@@ -49,7 +53,7 @@ def _draw_bar(painter: QPainter, area: QRect, name: str, limits: tuple[float, fl
         y = round(top + height * (high - value) / (high - low))
         painter.drawLine(left + BAR, y, left + BAR + 3, y)
         painter.drawText(QRect(left + BAR + 7, y - 8, 60, 16), Qt.AlignmentFlag.AlignVCenter, f"{value:g}")
-    text = f"{about.label} [{about.unit}]" if about.unit else about.label
+    text = f"{label} [{of}]" if of else label
     painter.drawText(QRect(area.right() - 330, area.top() + 12, 320, 20), RIGHT, text)
 
 
@@ -99,20 +103,25 @@ def _draw_patch(painter: QPainter, box: QRectF, image: QImage, pixel: tuple[int,
     painter.drawRect(QRectF(box.left() + 4 * cell, box.top() + 4 * cell, cell, cell))
 
 
-def numbers(hits: Hits, quality: Quality | None, x: int, y: int) -> list[tuple[str, str]]:
-    """Name and text of each number of a pixel (x, y) of the picture."""
+def numbers(hits: Hits, quality: Quality | None, x: int, y: int, kind: str = "lattice") -> list[tuple[str, str]]:
+    """Name and text of each number of a pixel (x, y) of the picture. kind: of the scene."""
     assert hits.size is not None
-    at = x + y * hits.size[0]
+    at, of = x + y * hits.size[0], "units" if kind == "cloud" else "cells"
     rows = [("Pixel", f"{x}, {y}"), ("Ray", OUTCOMES[STATUS_NAMES[hits.status[at]]])]
     if hits.hit[at]:
         normal = ", ".join(f"{n:+.3f}" for n in hits.normal[at])
-        rows += [("Depth t", f"{hits.t[at]:.4f} cells"), ("Normal", normal),
-                 ("Off-centre", f"{hits.off_centre[at]:.4f} cells")]
+        rows += [("Depth t", f"{fixed(hits.t[at])} {of}"), ("Normal", normal),
+                 ("Off-centre", f"{fixed(hits.off_centre[at])} {of}")]
     if hits.evaluations[at]:
         rows += [("Iterations", f"{hits.iterations[at]} of {hits.evaluations[at]} in all")]
     if quality is not None and math.isfinite(quality.distance[at]):
         rows += [("Error", f"{quality.distance[at]:.4f} cells, {quality.angle[at]:.2f}°")]
     return rows
+
+
+def fixed(length: float) -> str:
+    """A length to four places, or to four digits where it is small."""
+    return f"{length:.4f}" if abs(length) >= 0.01 or length == 0 else f"{length:.4g}"
 
 
 def ticks(low: float, high: float) -> list[float]:

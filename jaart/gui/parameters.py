@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from itertools import groupby
-from typing import Any
 
 from qtpy.QtCore import QSignalBlocker, Qt
 from qtpy.QtWidgets import QComboBox, QFormLayout, QScrollArea, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from jaart.core.parameter import Parameter
 from jaart.core.settings import PARAMETERS, PRESETS, preset
-from jaart.gui.form import Row, WordRow, column, make_row
+from jaart.gui.form import NumberRow, Row, column, make_row
+from jaart.gui.meant import meant
 from jaart.gui.model import SceneModel
 
 #: What is shown when the values are those of no preset.
@@ -44,19 +43,20 @@ class Parameters(QScrollArea):
     def __init__(self, model: SceneModel, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.model = model
+        self._marked: Row | None = None
         self.rows = {p.name: make_row(p) for p in PARAMETERS.values() if offers_choice(p)}
         for row in self.rows.values():
             row.entered.connect(self.model.set_value)
         self.sections = [Section(group, list(rows))
                          for group, rows in groupby(self.rows.values(), key=lambda row: row.about.group)]
-        self._preset = next(iter(PRESETS))
         self.presets = QComboBox()
         self.presets.addItems(list(PRESETS))
         self.presets.setToolTip("Whole sets of values; single ones can then be changed below.\n"
-                                "thesis: as its source has it; best: what was measured to be best, so far the same.")
+                                "best: what was measured to be best; thesis, adamson-alexa: as these sources have it.")
         self.presets.activated.connect(self._choose_preset)
         self._lay_out()
-        for signal in (model.settings_changed, model.scene_changed, model.camera_changed):
+        for signal in (model.settings_changed, model.scene_changed, model.camera_changed, model.known_changed,
+                       model.fault_changed):
             signal.connect(self.refresh)
         self.refresh()
 
@@ -77,27 +77,36 @@ class Parameters(QScrollArea):
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
 
     def refresh(self) -> None:
-        """Show the model's settings; rows without a meaning beside the others are hidden."""
-        settings = self.model.settings
+        """Show the model's settings; rows without a meaning beside the others or in the scene are hidden."""
+        settings, kind = self.model.settings, self.model.kind
+        name_at_fault, why = self.model.fault or ("", "")
         for name, row in self.rows.items():
             value = getattr(settings, name)
-            if isinstance(row, WordRow) and name in MEANT:
-                row.set_meant(MEANT[name](self.model))
+            self._tell_scene(row)
             if value != row.value:
                 row.show_value(value)
-            row.setVisible(row.about.matters(settings))
+            if name == name_at_fault or row is self._marked:
+                row.refuse(why if name == name_at_fault else "")
+            row.setVisible(name == name_at_fault or (row.about.matters(settings) and kind in row.about.scenes))
+        self._marked = self.rows.get(name_at_fault)
         for section in self.sections:
-            section.setVisible(section.title != "Model" or self._is_model())
+            section.setVisible(any(not row.isHidden() for row in section.rows))
+        if self._marked is not None:
+            self.ensureWidgetVisible(self._marked)
         self._show_preset()
 
-    def _is_model(self) -> bool:
-        return self.model.scene is not None and self.model.scene.model is not None
+    def _tell_scene(self, row: Row) -> None:
+        """What the scene has to do with a row: its units, and what its words stand for."""
+        row.set_kind(self.model.kind)
+        if isinstance(row, NumberRow) and self.model.known is not None:
+            row.set_scene(self.model.known.spacing, self.model.known.diagonal)
+        row.set_meant(meant(row.about.name, self.model))
 
     def _show_preset(self) -> None:
-        shown = [name for name, row in self.rows.items() if row.about.group != "Model" or self._is_model()]
+        shown = [name for name, row in self.rows.items() if self.model.kind in row.about.scenes]
         names = [name for name in PRESETS
                  if all(getattr(preset(name), n) == getattr(self.model.settings, n) for n in shown)]
-        names.sort(key=lambda name: name != self._preset)
+        names.sort(key=lambda name: name != self.model.preset)
         with QSignalBlocker(self.presets):
             self.presets.removeItem(self.presets.findText(OWN))
             if not names:
@@ -108,24 +117,9 @@ class Parameters(QScrollArea):
 
     def _choose_preset(self) -> None:
         if self.presets.currentText() in PRESETS:
-            self._preset = self.presets.currentText()
-            self.model.set_settings(preset(self.presets.currentText()))
+            self.model.choose_preset(self.presets.currentText())
 
 
 def offers_choice(about: Parameter) -> bool:
     """Whether there is anything to choose."""
     return about.kind != "choice" or len(about.choices) > 1
-
-
-def _raster(model: SceneModel) -> int:
-    known = model.scene.model if model.scene is not None else None
-    return known.raster if known is not None else 16
-
-
-def _light(model: SceneModel) -> tuple[float, float, float]:
-    return tuple(round(n, 2) for n in model.camera.eye) if model.camera is not None else (0.0, 0.0, 0.0)
-
-
-#: What the words of some parameters stand for.
-MEANT: dict[str, Callable[[SceneModel], Any]] = {
-    "trust": lambda model: model.settings.radius, "raster": _raster, "light": _light}

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from os import PathLike
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,33 +12,87 @@ from jaart.core.camera import Camera
 from jaart.core.records import Hits, Quality, Trace
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings
+from jaart.gui.navigation import Bounds
 from jaart.gui.worker import Job
 
-Extent = tuple[float, float, float]
+if TYPE_CHECKING:
+    from jaart.core.chosen import Chosen
 
 
-def read(source: str | PathLike[str], frame: int | None, settings: Settings) -> tuple[Scene, Extent]:
-    """A scene and its size in cells. Raises FileError for a file that cannot be read or has no surface."""
+@dataclass(frozen=True)
+class Opened:
+    """A scene that was read: its corners, settings that suit it, and what was changed in them."""
+
+    scene: Scene
+    bounds: Bounds
+    settings: Settings
+    changed: str
+
+
+@dataclass(frozen=True)
+class Known:
+    """What the settings come to in a scene; spacing: the unit "s" of lengths; diagonal: the unit "d"."""
+
+    values: Chosen
+    spacing: float
+    diagonal: float
+
+
+@dataclass(frozen=True)
+class Made:
+    """A picture, its errors where the exact surface is known, what its settings came to, and what to say of it."""
+
+    hits: Hits
+    quality: Quality | None
+    known: Known
+    notes: tuple[str, ...] = ()
+
+
+def read(source: str | PathLike[str], frame: int | None, settings: Settings, base: Settings,
+         before: Scene | None) -> Opened:
+    """A scene and settings for it. Raises FileError for a file that cannot be read or has no surface."""
     from jaart.core import prepare
     from jaart.core.io import load
+    from jaart.gui.suit import suited
 
     scene = load(source, frame)
-    prepare.surfels(scene, settings)
-    return scene, prepare.extent(scene, settings)
+    settings, changed = suited(scene, settings, base, before)
+    if scene.kind != "cloud":
+        prepare.surfels(scene, settings)
+    return Opened(scene, bounds(scene, settings), settings, changed)
+
+
+def bounds(scene: Scene, settings: Settings) -> Bounds:
+    """Lowest and highest corner of a scene."""
+    from jaart.core import extents
+
+    low, high = extents.bounds(scene, settings)
+    return (float(low[0]), float(low[1]), float(low[2])), (float(high[0]), float(high[1]), float(high[2]))
 
 
 def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int],
-            dragging: bool) -> tuple[Hits, Quality | None]:
-    """A picture and, where the exact surface is known, its errors; coarse ones are shown while it is made."""
+            dragging: bool) -> Made:
+    """A picture; coarse ones are shown while it is made."""
+    from jaart.core import prepare
+    from jaart.core.meaning import check
     from jaart.core.quality import quality
     from jaart.core.render import render
     from jaart.core.warm import needs_compile
 
     if needs_compile():
         job.say("Compiling the kernels, once on this machine; this takes some seconds …")
+    values = check(scene, settings)
     hits = render(scene, settings, camera, size, progress=None if dragging else job.progress, cancel=job.cancel,
                   picture=None if dragging else job.partial)
-    return hits, None if dragging else quality(hits, scene)
+    notes = tuple(getattr(prepare.points(scene, settings, values), "notes", ()))
+    return Made(hits, None if dragging else quality(hits, scene), _known(scene, settings, values), notes)
+
+
+def _known(scene: Scene, settings: Settings, values: Chosen) -> Known:
+    from jaart.core import cloud, extents
+
+    spacing = cloud.spacing(scene) if scene.kind == "cloud" else 1.0
+    return Known(values, spacing, extents.diagonal(scene, settings))
 
 
 def ray(scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int], pixel: tuple[int, int]) -> Trace:
@@ -45,5 +101,3 @@ def ray(scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int],
 
     origins, directions = camera.rays(size, np.array([pixel[0] + pixel[1] * size[0]]))
     return trace(scene, settings, origins[0], directions[0], pixel=pixel)
-
-

@@ -10,7 +10,7 @@ from typing import Any
 
 from qtpy.QtCore import QObject, Qt, Signal
 
-from jaart.core.errors import Cancelled, JaartError
+from jaart.core.errors import Cancelled, JaartError, SettingsError
 from jaart.gui.garbage import GarbageCollector
 
 log = logging.getLogger("jaart")
@@ -58,10 +58,14 @@ class Job:
 
 
 class Worker(QObject):
-    """Runs jobs one after the other in a thread of its own and reports in the window's thread."""
+    """Runs jobs one after the other in a thread of its own and reports in the window's thread.
+
+    refused: the settings of a job make no sense; failed: anything else that went wrong.
+    """
 
     progressed = Signal(float)
     failed = Signal(str)
+    refused = Signal(str)
     said = Signal(str)
     ended = Signal()
     posted = Signal(object, str, object)
@@ -138,7 +142,7 @@ class Worker(QObject):
             return self._running
 
     def _deliver(self, job: Job, what: str, result: Any) -> None:
-        if what in ("done", "failed", "cancelled"):
+        if what in ("done", "failed", "refused", "cancelled"):
             self._open.discard(job)
         if not (self._stop or job.forgotten or (job.cancel.is_set() and what != "partial")):
             self._hand_over(job, what, result)
@@ -152,6 +156,8 @@ class Worker(QObject):
             job.on_partial(result)
         elif what == "failed":
             self.failed.emit(result)
+        elif what == "refused":
+            self.refused.emit(result)
         elif what == "said":
             self.said.emit(result)
         elif what == "progress":
@@ -164,6 +170,8 @@ def _outcome(job: Job) -> tuple[str, Any]:
         return "done", job.work(job)
     except Cancelled:
         return "cancelled", None
+    except SettingsError as error:
+        return "refused", str(error)
     except JaartError as error:
         return "failed", str(error)
     except MemoryError:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from jaart.core.projection import Plane, plane, section
 from jaart.core.records import Trace
-from jaart.plot import style
+from jaart.plot import scale, style
 from jaart.plot.style import THEMES, Spot, Theme
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Up = tuple[float, float, float]
 
-#: Half the window at least and at most, and length of the normals, in cells.
+#: Half the window at least and at most, and length of the normals, in cells or radii of balls.
 _NEAR, _FAR, _NORMAL = 2.0, 4.0, 0.45
 
 
@@ -45,13 +45,13 @@ def draw_projection(axes: Axes, trace: Trace, step: int = 0, theme: str = "light
     """
     colours = THEMES[theme]
     if not trace.steps:
-        style.say(axes, colours, style.NO_STEPS)
+        style.say(axes, colours, scale.no_steps(trace))
         return []
-    style.dress(axes, colours, "t along the ray [cells]", "distance from the ray [cells]")
+    style.dress(axes, colours, f"t along the ray [{scale.unit(trace)}]", f"distance from the ray [{scale.unit(trace)}]")
     flat = plane(trace, step, up)
     axes.set_aspect("equal", adjustable="datalim")
     _window(axes, trace, step)
-    _cells(axes, trace, flat, colours)
+    (_balls if scale.is_cloud(trace) else _cells)(axes, trace, step, flat, colours)
     axes.axhline(0, color=colours.ray, linewidth=1.3, zorder=3)
     spots = _surfels(axes, trace, step, flat, colours)
     _plane(axes, trace, step, flat, colours)
@@ -71,16 +71,16 @@ def _free_limits(axes: Axes) -> None:
 
 def _window(axes: Axes, trace: Trace, step: int) -> None:
     """The same window for all steps of a start that fit into it, so that stepping does not jump."""
-    same = trace.start == trace.start[step]
-    ends = np.concatenate([trace.t_query[same], trace.t_next[same & (np.abs(trace.energy) < _FAR)]])
-    middle, half = (ends.min() + ends.max()) / 2, max(_NEAR, (ends.max() - ends.min()) / 2 + 0.7)
-    if half > _FAR:
-        middle, half = trace.t_query[step], _FAR
+    same, size = trace.start == trace.start[step], scale.size(trace)
+    ends = np.concatenate([trace.t_query[same], trace.t_next[same & (np.abs(trace.energy) < _FAR * size)]])
+    middle, half = (ends.min() + ends.max()) / 2, max(_NEAR * size, (ends.max() - ends.min()) / 2 + 0.7 * size)
+    if half > _FAR * size:
+        middle, half = trace.t_query[step], _FAR * size
     axes.set_xlim(middle - half, middle + half)
     axes.set_ylim(-0.75 * half, 0.75 * half)
 
 
-def _cells(axes: Axes, trace: Trace, flat: Plane, colours: Theme) -> None:
+def _cells(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> None:
     from matplotlib.collections import PolyCollection
 
     for full in (False, True):
@@ -90,6 +90,22 @@ def _cells(axes: Axes, trace: Trace, flat: Plane, colours: Theme) -> None:
             edgecolor=colours.full_cell if full else colours.cell, linewidth=1.9 if full else 0.7), autolim=False)
 
 
+def _balls(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> None:
+    """The balls as the plane cuts them; those that hold the query stand out."""
+    from matplotlib.collections import EllipseCollection
+
+    centres, radii = trace.balls[:, :3], trace.balls[:, 3]
+    cut = np.sqrt(np.maximum(radii**2 - flat.heights(centres)**2, 0.0))
+    holding = np.linalg.norm(centres - trace.query[step], axis=1) <= radii
+    for full in (False, True):
+        shown = (cut > 0) & (holding == full)
+        across = 2 * cut[shown]
+        axes.add_collection(EllipseCollection(
+            across, across, np.zeros(len(across)), units="xy", offsets=flat.coordinates(centres[shown]).reshape(-1, 2),
+            transOffset=axes.transData, facecolor=colours.band if full else "none", zorder=1.0 + 0.2 * full,
+            edgecolor=colours.full_cell if full else colours.cell, linewidth=1.4 if full else 0.6), autolim=False)
+
+
 def _surfels(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> list[Spot]:
     from matplotlib.collections import LineCollection
 
@@ -97,15 +113,15 @@ def _surfels(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -
     if not len(near):
         return []
     points = flat.coordinates(trace.surfels.points[near])
-    tips = points + _NORMAL * flat.components(trace.surfels.normal[near])
+    tips = points + _NORMAL * scale.size(trace) * flat.components(trace.surfels.normal[near])
     share = weights / weights.max()
     alpha = 0.3 + 0.7 * share
     axes.add_collection(LineCollection(list(np.stack([points, tips], axis=1)), color=colours.surfel, alpha=alpha,
                                        linewidth=1.0, zorder=2.0), autolim=False)
     axes.scatter(points[:, 0], points[:, 1], s=3 + 75 * share, color=colours.surfel, alpha=alpha, linewidth=0,
                  zorder=2.1)
-    heights = flat.heights(trace.surfels.points[near])
-    return [Spot(x, y, f"surfel {i}: weight {w:.3f}, {abs(z):.2f} cells {'before' if z > 0 else 'behind'} the plane")
+    heights, of = flat.heights(trace.surfels.points[near]), scale.unit(trace)
+    return [Spot(x, y, f"surfel {i}: weight {w:.3f}, {scale.text(trace, abs(z), 2)} {of} {'before' if z > 0 else 'behind'} the plane")
             for i, (x, y), w, z in zip(near, points, weights, heights, strict=True)]
 
 
@@ -116,23 +132,24 @@ def _plane(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> 
     length = np.linalg.norm(normal)
     if not length > 1e-6:
         return
-    along = 50.0 * np.array([-normal[1], normal[0]]) / length
+    size = scale.size(trace)
+    along = 50.0 * size * np.array([-normal[1], normal[0]]) / length
     axes.plot(*np.stack([a - along, a + along]).T, color=colours.plane, linewidth=1.8, zorder=4,
               scalex=False, scaley=False)
-    axes.annotate("", tuple(a + 0.8 * normal), tuple(a), zorder=5, annotation_clip=False, arrowprops={
+    axes.annotate("", tuple(a + 0.8 * size * normal), tuple(a), zorder=5, annotation_clip=False, arrowprops={
         "arrowstyle": "-|>", "color": colours.plane, "linewidth": 1.8, "shrinkA": 0, "shrinkB": 0})
 
 
 def _points(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> list[Spot]:
     others = [i for i in range(trace.steps) if i != step]
-    spots = [_spot(trace.query[i], (trace.t_query[i], 0), f"Q{i + 1}", i) for i in others]
+    spots = [_spot(trace, trace.query[i], (trace.t_query[i], 0), f"Q{i + 1}", i) for i in others]
     axes.plot(trace.t_query[others], np.zeros(len(others)), zorder=5, alpha=0.45, scalex=False, scaley=False,
               **style.marker("query", colours, 0.6 * style.MARK))
     here = f"{step + 1}"
     spots += _chosen(axes, trace, step, flat, colours)
     if trace.hit:
         axes.plot(trace.t, 0, zorder=7, **style.marker("hit", colours))
-        spots.append(_spot(trace.point, (trace.t, 0), "hit"))
+        spots.append(_spot(trace, trace.point, (trace.t, 0), "hit"))
     left, right = axes.get_xlim()
     texts = {f"Q{here}": colours.query, f"H{here}": colours.next, "a": colours.barycentre}
     style.label(axes, [(s.x, s.y, name, texts[name]) for s in spots if (name := s.text.split(":")[0]) in texts
@@ -143,19 +160,19 @@ def _points(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) ->
 def _chosen(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> list[Spot]:
     """The query, its barycentre, the next point, and the ways to them."""
     query, a, t_next = (trace.t_query[step], 0.0), flat.coordinates(trace.barycentre[step]), trace.t_next[step]
-    spots = [_spot(trace.query[step], query, f"Q{step + 1}", step)]
+    spots = [_spot(trace, trace.query[step], query, f"Q{step + 1}", step)]
     axes.plot(*query, zorder=6, **style.marker("query", colours))
     if np.isfinite(a).all():
         axes.plot([query[0], a[0]], [0, a[1]], color=colours.barycentre, linewidth=1.2, dashes=(3, 1.5), zorder=4)
         axes.plot(*a, zorder=6.2, **style.marker("barycentre", colours))
-        spots.append(_spot(trace.barycentre[step], tuple(a), "a"))
+        spots.append(_spot(trace, trace.barycentre[step], tuple(a), "a"))
     if np.isfinite(t_next):
         axes.plot([query[0], t_next], [0, 0], color=colours.next, linewidth=2.4, zorder=3.5, scalex=False)
         axes.plot(t_next, 0, zorder=6.4, **style.marker("next", colours))
-        spots.append(_spot(trace.next_point[step], (t_next, 0), f"H{step + 1}", step))
+        spots.append(_spot(trace, trace.next_point[step], (t_next, 0), f"H{step + 1}", step))
     return spots
 
 
-def _spot(point: Array, flat: tuple[float, ...], name: str, step: int | None = None) -> Spot:
-    where = ", ".join(f"{c:.3f}" for c in point)
+def _spot(trace: Trace, point: Array, flat: tuple[float, ...], name: str, step: int | None = None) -> Spot:
+    where = ", ".join(scale.text(trace, c, 3) for c in point)
     return Spot(float(flat[0]), float(flat[1]), f"{name}: ({where})", step)

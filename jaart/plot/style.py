@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from jaart.plot import scale
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -55,10 +57,9 @@ OUTCOMES = {
     "left_trust": "left the trust region", "parallel": "plane parallel to the ray",
     "few_neighbours": "no surfel near", "undefined_normal": "normal undefined", "bounded": "refused: off-centre",
     "floor": "arrived at the precision floor", "undecided": "undecided", "bad_ray": "not a ray",
+    "bounded_weight": "refused: little weight", "bounded_nearest": "refused: surfel too far",
+    "bounded_angle": "refused: angle", "bounded_gap": "refused: no clear sheet",
 }
-
-#: What a ray without steps has to show.
-NO_STEPS = "This ray crosses no cell with a surfel:\nno step was taken."
 
 
 @dataclass(frozen=True)
@@ -152,6 +153,7 @@ def step_title(trace: Trace, step: int) -> tuple[str, str]:
     """The two title lines of a step: which one and how it ended; its numbers."""
     starts = f" · start {trace.start[step] + 1} of {trace.start[-1] + 1}" if trace.start[-1] else ""
     first = f"Step {step + 1} of {trace.steps}{starts}: {OUTCOMES[trace.outcome[step]]}"
-    second = (f"step {trace.energy[step]:+.3f}   off-centre {trace.off_centre[step]:.3f} cells   "
+    moved, off = scale.text(trace, trace.energy[step], 3, "+"), scale.text(trace, trace.off_centre[step], 3)
+    second = (f"step {moved}   off-centre {off} {scale.unit(trace)}   "
               f"Σθ {trace.weight_sum[step]:.3g} of {len(trace.neighbours[step])} surfels")
     return first, second

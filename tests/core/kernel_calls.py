@@ -29,9 +29,10 @@ def near_of(points: Vectors, normals: Vectors | None = None) -> Near:
 
 
 def rule_of(weight: str = "gaussian", normal: str = "surfel", h: float = 0.8, reach: float = math.inf, k: int = 0,
-            degree: int = 0, c: float = 0.25, oriented: int = 1) -> Rule:
+            degree: int = 0, patch: float = 0.0, c: float = 0.25, oriented: int = 1) -> Rule:
     """A rule by names."""
-    return Rule(WEIGHTS[weight], NORMALS[normal], float(h), float(reach), k, oriented, degree, float(c))
+    return Rule(weight=WEIGHTS[weight], normal=NORMALS[normal], h=float(h), reach=float(reach), k=k,
+                oriented=oriented, degree=degree, patch=float(patch), c=float(c))
 
 
 def place(x: Sequence[float]) -> tuple[float, float, float]:

@@ -101,11 +101,20 @@ def test_bad_values(tmp_path: Path, capfd: pytest.CaptureFixture[str], value: fl
     assert f"array 'fill': 1 value {what}" in text and "[1, 2, 3]" in text
 
 
+@pytest.mark.parametrize(("about", "spacing", "origin"), [
+    ('Origin="1 2 3" Spacing="0.5 1 1.5"', (0.5, 1, 1.5), (6, -2, 10.5)),
+    ('Origin="1 2 3" Spacing="0.5 0.50000001 0.5"', (0.5, 0.5, 0.5), (6, 0, 5.5))])
+def test_each_edge_of_a_cell_is_kept_but_not_its_rounding(tmp_path: Path, about: str, spacing: tuple[float, ...],
+                                                          origin: tuple[float, ...]) -> None:
+    scene = load(written(tmp_path, image(array("fill", LEVELS), extent="10 13 -4 0 5 10", about=about)))
+    assert (scene.spacing, scene.origin) == (spacing, origin)
+
+
 @pytest.mark.parametrize("about, place", [
-    ('Origin="0 0 0" Spacing="1 1 1.5"', "Spacing: is (1.0, 1.0, 1.5); this version needs cubic cells"),
+    ('Origin="0 0 0" Spacing="1 1 150"', "Spacing: is (1.0, 1.0, 150.0); expected edges above 0, the longest up"),
     ('Origin="0 0 0" Spacing="0 0 0"', "Spacing"),
     ('Origin="0 0 0" Spacing="1 1 1" Direction="0 1 0 1 0 0 0 0 1"', "Direction: is rotated")])
-def test_lattices_of_no_cubes(tmp_path: Path, capfd: pytest.CaptureFixture[str], about: str, place: str) -> None:
+def test_lattices_that_cannot_be(tmp_path: Path, capfd: pytest.CaptureFixture[str], about: str, place: str) -> None:
     assert place in problem(written(tmp_path, image(array("fill", LEVELS), about=about)), capfd)
 
 

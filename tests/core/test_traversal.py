@@ -18,7 +18,7 @@ from jaart.core.render import render
 from jaart.core.scene import Model, Scene
 from jaart.core.settings import Settings
 from jaart.core.shapes import Sphere
-from jaart.core.tracers import LatticeTracer, scratch
+from jaart.core.tracers import LatticeTracer
 from tests import naive
 
 Array = NDArray[np.float64]
@@ -144,7 +144,7 @@ def starts(ready: prepare.Prepared, cells: records.Cells, origin: Vector, direct
     rows = np.empty((200, records.LOG_WIDTH))
     o = (float(origin[0]), float(origin[1]), float(origin[2]))
     d = (float(direction[0]), float(direction[1]), float(direction[2]))
-    end = trace_ray(cells, fail, o, d, rows, *scratch(cells.sites))
+    end = trace_ray(cells, fail, o, d, rows, *ready.tracer.scratch())
     logged = rows[:end.rows, [records.T, records.CELL_I, records.CELL_J, records.CELL_K]]
     return [(t, i, j, k) for t, i, j, k in logged.tolist()]
 
@@ -185,7 +185,7 @@ def test_skipping_visits_fewer_cells() -> None:
     slow = fast._replace(empty=np.minimum(fast.empty, 1).astype(np.uint8))
     o, d = (-5.0, 15.2, 16.3), (1.0, 0.0, 0.0)
     rows = np.empty((0, records.LOG_WIDTH))
-    fast_end, slow_end = (trace_ray(cells, ready.tracer.plan, o, d, rows, *scratch(cells.sites))
+    fast_end, slow_end = (trace_ray(cells, ready.tracer.plan, o, d, rows, *ready.tracer.scratch())
                           for cells in (fast, slow))
     assert fast_end._replace(cells=0) == slow_end._replace(cells=0)
     assert fast_end.cells < slow_end.cells / 1.5

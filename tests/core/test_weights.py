@@ -8,19 +8,14 @@ from decimal import Decimal, localcontext
 import numpy as np
 import pytest
 
-from jaart.core.kernels import records as r
-from jaart.core.kernels.records import Near, Rule
-from jaart.core.kernels.tangent import tangent_surfel
 from jaart.core.kernels.weights import exp_minus
 from jaart.core.surfels import Surfels
+from tests.core.kernel_calls import near_of, rule_of, value_of
 
 
 def f_and_normal(found: Surfels, x: tuple[float, float, float], h: float) -> tuple[float, tuple[float, float, float]]:
     """f and n at x, relative to the centre of cell (1, 1, 1), by all surfels."""
-    columns = np.concatenate([found.points - 1.5, found.normal], axis=1).T.ravel()
-    near = Near(np.ascontiguousarray(columns), np.uint64(0), np.uint64(len(found)))
-    rule = Rule(r.GAUSSIAN, r.SURFEL, h, math.inf, 0, 0, 0, 0.25)
-    value = tangent_surfel(near, x, rule, r.VALUE_ONLY, np.empty(24 * len(found)), np.empty(r.FIT_SIZE))
+    value = value_of(near_of((found.points - 1.5).tolist(), found.normal.tolist()), x, rule_of(h=h))
     return value.f, value.n
 
 

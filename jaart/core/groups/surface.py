@@ -21,6 +21,8 @@ def evaluates(settings: Any) -> bool:
 
 
 def _energetic(settings: Any) -> bool:
+    if settings.method == "isosurface":
+        return bool(settings.energy != "angle")
     return settings.method in ENERGIES or (settings.method == "tangent" and settings.search == "minimise")
 
 
@@ -45,6 +47,11 @@ class SurfaceSettings:
         "integer", 2, low=0, high=4, step=1, group="Surface", label="Degree", stage="rays", source="[A 10]",
         when=lambda s: s.method in FITTED,
         help="Degree of the polynomial; lowered, and counted, where too few points are near.")
+    patch: float = parameter(
+        "number", 0.0, low=0, high=4, step=0.05, unit="cells", group="Surface", label="Patch of a surfel",
+        stage="rays", when=lambda s: s.method == "polynomial", scenes=("lattice", "model"),
+        help="Beyond the sources: a surfel of fill levels is the mean of a patch of the surface, about a cell wide, and "
+             "the polynomial's mean over the patch is fitted to it. 0: the polynomial is fitted to the point alone.")
     emphasise: bool = parameter(
         "flag", False, group="Surface", label="Emphasise by the angle", stage="rays", source="[T 2.24]",
         when=_energetic, help="Minimise 1 - (1 - e_angle)(1 - e) in the place of the energy e.")

@@ -18,6 +18,8 @@ from jaart.core.scene import Scene
 
 #: Names of arrays that are taken where there are several.
 NAMES = ("levels", "fill")
+#: A cell's longest edge in shortest ones; edges that differ by a smaller share are those of a cube.
+LONGEST_EDGE, ROUNDED = 100.0, 1e-6
 
 Vector = tuple[float, float, float]
 
@@ -26,7 +28,7 @@ def read(path: Path, frame: int | None = None) -> Scene:
     """The lattice in a VTI file: a scalar array of its cells, else of its points, which become cells' centres.
 
     The array is the one named levels or fill, else the only one. Raises FileError; document types
-    and entities are refused, and so are rotated images and cells that are no cubes.
+    and entities are refused, and so are rotated images.
     """
     frame = check_frame(path, frame, 1)
     vti_guard.check(path)
@@ -44,9 +46,9 @@ def read(path: Path, frame: int | None = None) -> Scene:
     image = reader.GetOutput()
     place = f"array {name!r}"
     levels, notes = fill_levels(path, place, _values(path, place, image, of_cells, name, shape))
-    size, first = _spacing(path, image), [low - (not of_cells) / 2 for low, _ in extent]
-    x, y, z = (o + f * size for o, f in zip(image.GetOrigin(), first, strict=True))
-    return Scene(str(path), levels=levels, spacing=(size, size, size), origin=(x, y, z), frame=frame, notes=notes)
+    spacing, first = _spacing(path, image), [low - (not of_cells) / 2 for low, _ in extent]
+    x, y, z = (o + f * s for o, f, s in zip(image.GetOrigin(), first, spacing, strict=True))
+    return Scene(str(path), levels=levels, spacing=spacing, origin=(x, y, z), frame=frame, notes=notes)
 
 
 def _open(path: Path) -> tuple[Any, list[str]]:
@@ -121,12 +123,14 @@ def _values(path: Path, place: str, image: Any, of_cells: bool, name: str, shape
     return values.reshape(shape, order="F")
 
 
-def _spacing(path: Path, image: Any) -> float:
-    """The edge of a cell."""
+def _spacing(path: Path, image: Any) -> Vector:
+    """The edges of a cell; those that differ by rounding alone are made equal."""
     matrix = image.GetDirectionMatrix()
     if any(matrix.GetElement(i, j) != (i == j) for i in range(3) for j in range(3)):
         raise FileError(path, "is rotated; expected axes along x, y, z", "Direction")
     spacing = image.GetSpacing()
-    if not all(0 < s < np.inf for s in spacing) or max(spacing) > min(spacing) * (1 + 1e-6):
-        raise FileError(path, f"is {spacing}; this version needs cubic cells, the same on each axis", "Spacing")
-    return float(spacing[0])
+    if not all(0 < s < np.inf for s in spacing) or max(spacing) > min(spacing) * LONGEST_EDGE:
+        raise FileError(path, f"is {spacing}; expected edges above 0, the longest up to {LONGEST_EDGE:g} times the "
+                              "shortest", "Spacing")
+    x, y, z = spacing
+    return (x, x, x) if max(spacing) <= min(spacing) * (1 + ROUNDED) else (x, y, z)

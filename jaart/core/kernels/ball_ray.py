@@ -8,7 +8,7 @@ promise that comes up is the first hit, up to what two sheets closer than a quar
 from __future__ import annotations
 
 from math import inf, nan, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,7 @@ _SAME_SHEET = 0.25
 NOTHING, ROOM = -1, -2
 
 
+_ZERO: Any = np.int64(0)
 #: A node adds fewer entries than this to the heap.
 _LEAF_ROOM = 64
 
@@ -39,15 +40,15 @@ _LEAF_ROOM = 64
 class Balls(NamedTuple):
     """A cloud as rays pierce it.
 
-    sites: the gathered balls, in the order they were asked for; slot: (N,) place of each ball in sites; count: of
+    sites: the gathered balls, in the order they were asked for; slot: (N,) place of each ball in sites; ready: of
     the balls gathered, slots from there on are not yet there; centres, radii: (N, 3), (N,); tree: over the balls;
-    guesses: (count, GUESS_WIDTH) what is kept at their centres; stretches: 1 where a ball is searched from side to
+    guesses: (ready, GUESS_WIDTH) what is kept at their centres; stretches: 1 where a ball is searched from side to
     side, 0 where a search starts from its promise; any_hit: 1 where the first found will do.
     """
 
     sites: Sites
     slot: Ints
-    count: int
+    ready: int
     centres: Array
     radii: Array
     tree: Tree
@@ -97,12 +98,12 @@ def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, number: 
     The base is the ray's foot point on the centre; s counts from there.
     """
     foot, half, _ = chord(balls, ball, o, d)
-    slot = balls.slot[ball]
+    slot: Any = balls.slot[ball]
     c = (balls.centres[ball, 0], balls.centres[ball, 1], balls.centres[ball, 2])
     base = along((o[0] - c[0], o[1] - c[1], o[2] - c[2]), d, foot)
     low, high = max(-half, -foot), half
     s = low if balls.stretches == 1 else meets(balls.guesses[slot], base, d, low, high, plan.rule.h)
-    return Start((slot, np.int64(0), np.int64(0)), base, foot, s, low, high, nan, number)
+    return Start((slot, _ZERO, _ZERO), base, foot, s, low, high, nan, number)
 
 
 @kernel(STRICT)
@@ -129,7 +130,7 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
             size = push_children(balls, -1 - item, o, d, inverse, keys, items, size)
             continue
         ball = item if item < count else item - count
-        if balls.slot[ball] < 0 or balls.slot[ball] >= balls.count:
+        if balls.slot[ball] < 0 or balls.slot[ball] >= balls.ready:
             return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, 0, ball)
         start = start_in(balls, plan, ball, o, d, number)
         if item < count:
@@ -170,7 +171,7 @@ def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array,
     sites, log = unowned_sites(balls.sites), unowned(rows)
     tree = Tree(unowned(balls.tree.low), unowned(balls.tree.high), unowned(balls.tree.first),
                 unowned(balls.tree.size), unowned(balls.tree.order))
-    balls = Balls(sites, unowned(balls.slot), balls.count, unowned(balls.centres), unowned(balls.radii), tree,
+    balls = Balls(sites, unowned(balls.slot), balls.ready, unowned(balls.centres), unowned(balls.radii), tree,
                   unowned(balls.guesses), balls.stretches, balls.any_hit)
     scratch, fitted, waiting, numbers, written = unowned(work), unowned(fit), unowned(keys), unowned(items), 0
     for i in range(pixels.shape[0]):

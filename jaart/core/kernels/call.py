@@ -22,7 +22,7 @@ _FLOATS = types.Array(types.float64, 1, "C")
 _ROWS = types.Array(types.float64, 2, "C")
 _NEAR = types.NamedTuple((_FLOATS, types.uint64, types.uint64), r.Near)
 _RULE = types.NamedTuple((types.int64, types.int64, types.float64, types.float64, types.int64, types.int64,
-                          types.int64, types.float64), r.Rule)
+                          types.int64, types.float64, types.float64), r.Rule)
 _VALUE = types.NamedTuple((types.int64, types.float64, _VECTOR, _VECTOR, types.float64, types.float64, _VECTOR,
                            types.int64), r.Value)
 _SITES = types.NamedTuple((_CELL, _ROWS, types.Array(types.int64, 1, "C"), types.Array(types.int32, 1, "C"),

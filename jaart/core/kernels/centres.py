@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from jaart.core.kernels import records as r
@@ -26,7 +28,7 @@ def centre_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vect
     In a lattice the first hit ahead of the start within the trust region; in a ball its promise, already met.
     """
     near, centre = surfels_near(sites, start.cell), (0.0, 0.0, 0.0)
-    size = np.int64(near.size)
+    size: Any = np.int64(near.size)
     v = evaluate_at(how.evaluate, near, centre, rule, r.VALUE_ONLY, work, fit)
     lowered = fewer_degrees(v, rule)
     if v.state != r.CONTINUE:

@@ -123,10 +123,10 @@ def hit_of(cells: Cells, cell: Cell, near: Near, t: float, x: Vector, d: Vector,
         written = log_mean(rows, cells, cell, t, x, m, _NOTHING, r.UNDEFINED_NORMAL)
         return RayEnd(r.UNDEFINED_NORMAL, nan, _NOTHING, _NOTHING, nan, nan, 1, 1, m.many, 0, 0, written, -1)
     n, hit = scaled(m.n, 1.0 / size), along(x, d, m.ahead)
+    place = in_scene(cells.sites, cell, hit)
     written = log_mean(rows, cells, cell, t, x, m, n, r.CONVERGED)
     off = length((m.centre[0] - hit[0], m.centre[1] - hit[1], m.centre[2] - hit[2]))
-    return RayEnd(r.CONVERGED, t + m.ahead, in_scene(cells.sites, cell, hit), n, m.ahead, off, 1, 1, m.many, 0, 0, written,
-                  -1)
+    return RayEnd(r.CONVERGED, t + m.ahead, place, n, m.ahead, off, 1, 1, m.many, 0, 0, written, -1)
 
 
 @kernel(STRICT)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import nan
+from math import ceil, nan
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.call import evaluate_at
@@ -56,3 +56,36 @@ def sample_layer(sites: Sites, plan: Plan, d: Vector, divisions: int, layer: int
     for j in range(sites.shape[1]):
         for k in range(sites.shape[2]):
             sample_cell(own, plan, d, divisions, (layer, j, k), there, scratch, fitted)
+
+
+@kernel(STRICT)
+def holder(x: float, cells: int) -> int:
+    """The cell that owns a coordinate: on a face, the one on the low side."""
+    return min(max(int(ceil(x)) - 1, 0), cells - 1)
+
+
+@kernel(STRICT)
+def write_gradients(sites: Sites, plan: Plan, d: Vector, width: float, points: Array, gradients: Array, work: Array,
+                    fit: Array) -> None:
+    """Write the energy's gradient at points (N, 3) of a lattice, by central differences; NaN where undefined.
+
+    width: half of what the differences are taken over.
+    """
+    own, scratch, fitted = unowned_sites(sites), unowned(work), unowned(fit)
+    for i in range(points.shape[0]):
+        p = (points[i, 0], points[i, 1], points[i, 2])
+        cell = (holder(p[0], sites.shape[0]), holder(p[1], sites.shape[1]), holder(p[2], sites.shape[2]))
+        near = surfels_near(own, cell)
+        for axis in range(3):
+            gradients[i, axis] = nan
+            if near.size == 0:
+                continue
+            change = 0.0
+            for side in range(2):
+                step = width if side == 1 else -width
+                x = (p[0] - cell[0] - 0.5 + (step if axis == 0 else 0.0),
+                     p[1] - cell[1] - 0.5 + (step if axis == 1 else 0.0),
+                     p[2] - cell[2] - 0.5 + (step if axis == 2 else 0.0))
+                e = energy_at(near, x, plan, d, scratch, fitted)
+                change += e if side == 1 else -e
+            gradients[i, axis] = change / (2.0 * width)

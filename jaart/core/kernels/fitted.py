@@ -48,7 +48,8 @@ def polynomial(near: Near, x: Vector, rule: Rule, want: int, work: Array, coeffi
     """f(x) = g(0, 0), g fitted to the heights of the surfels above the plane through x with normal n(x) [A 10].
 
     near: surfels; x: relative to their place's centre; want: unused, no closed form of ∇f; work: scratch of 20
-    numbers a surfel; coefficients: (15,), g's are written there, in h. Degree 0 is the tangent surface.
+    numbers a surfel, the weights at x stay in the first of them; coefficients: (15,), g's are written there, in h.
+    Degree 0 is the tangent surface.
     """
     w = work[_THREE * near.size:]
     s, shift = weigh(near, x, rule, w)
@@ -59,5 +60,7 @@ def polynomial(near: Near, x: Vector, rule: Rule, want: int, work: Array, coeffi
     if state != r.CONTINUE:
         return no_value(state, off, s, shift)
     write_places(near, x, n, 1.0 / rule.h, work)
-    degree = fit(work, near.size, rule.degree, coefficients)
+    degree = fit(work, near.size, rule.degree, rule.patch, coefficients)
+    for i in range(near.size):
+        work[i] = w[i]
     return Value(state, coefficients[0] * rule.h, n, off, s, shift, _NOTHING, degree)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import nan
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from jaart.core.kernels.records import FIT_SIZE, Array, Plan, Sites, Value, Vect
 from jaart.core.kernels.roots import first_root_above
 from jaart.core.kernels.vectors import dot, frame
 
+_ZERO: Any = np.int64(0)
 #: A row of guesses: state, normal, f, degree, then the polynomial's coefficients.
 STATE, N_X, N_Y, N_Z, HEIGHT, DEGREE, FIT = range(7)
 GUESS_WIDTH = FIT + FIT_SIZE
@@ -33,7 +35,7 @@ def write_guess(row: Array, v: Value, fit: Array) -> None:
 def fit_centres(sites: Sites, plan: Plan, begin: int, guesses: Array, work: Array, fit: Array) -> None:
     """Evaluate the surface at the centres of the balls begin, begin + 1, ... and keep it in guesses (B, GUESS_WIDTH)."""
     for ball in range(begin, begin + guesses.shape[0]):
-        near = surfels_near(sites, (ball, np.int64(0), np.int64(0)))
+        near = surfels_near(sites, (ball, _ZERO, _ZERO))
         v = evaluate_at(plan.how.evaluate, near, (0.0, 0.0, 0.0), plan.rule, r.VALUE_ONLY, work, fit)
         write_guess(guesses[ball - begin], v, fit)
 

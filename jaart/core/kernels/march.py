@@ -7,9 +7,9 @@ from math import ceil, nan
 from jaart.core.kernels import records as r
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import surfels_near
-from jaart.core.kernels.probe import F, look
+from jaart.core.kernels.probe import F, look, opposite
 from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, Start, Vector
-from jaart.core.kernels.stretch import fewer, hit_at, nothing_found, through
+from jaart.core.kernels.stretch import fewer, hit_at, nothing_found, state_of
 
 
 @kernel(STRICT)
@@ -21,22 +21,24 @@ def march_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vecto
     because other surfels count there, the hit is on the border.
     """
     size = int(surfels_near(sites, start.cell).size)
+    if size == 0:
+        return nothing_found(r.BACKGROUND, 0, 0, 0, 0, nan)
     count = max(int(ceil((start.high - start.low) / how.step)), 1)
-    state, looks, lowered, s_before, f_before = r.BACKGROUND, 0, 0, start.low, start.before
+    state, looks, refused, lowered, s_before, f_before = r.BACKGROUND, 0, 0, 0, start.low, start.before
     for i in range(count + 1):
         s = start.low + (start.high - start.low) * (i / count)
         seen = look(F, sites, rule, how, d, start, s, rows, row + looks, work, fit)
         looks, lowered = looks + 1, lowered + fewer(seen, rule)
         if seen.value.state != r.CONTINUE:
-            state = seen.value.state
-        elif through(f_before, seen.f, seen.value.n, d):
+            state = state_of(seen.value, state)
+        elif opposite(f_before, seen.f):
             at = s if s == s_before else s_before + (s - s_before) * (f_before / (f_before - seen.f))
             hit = look(F, sites, rule, how, d, start, at, rows, row + looks, work, fit)
             looks, lowered = looks + 1, lowered + fewer(hit, rule)
-            end = hit_at(r.CONVERGED, sites, rule, how, bounds, d, start, at, hit.value, hit.f, looks, looks,
-                         looks * size, lowered, work, fit)
+            end = hit_at(r.CONVERGED, sites, rule, how, bounds, d, start, at, hit.value, hit.f, looks, looks + refused,
+                         (looks + refused) * size, lowered, work, fit)
             if end.state == r.CONVERGED:
                 return end
-            state = end.state
+            state, refused = end.state, end.evaluations - looks  # what finding that out took
         s_before, f_before = s, seen.f
-    return nothing_found(state, looks, looks, looks * size, lowered, f_before if f_before == f_before else nan)
+    return nothing_found(state, looks, looks + refused, (looks + refused) * size, lowered, f_before)

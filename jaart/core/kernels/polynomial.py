@@ -36,27 +36,34 @@ def terms(degree: int) -> int:
 
 
 @kernel()
-def _product(work: Array, a: Unsigned, b: Unsigned, to: Unsigned, rows: Unsigned) -> None:
-    """Write the products of two columns into a third."""
+def _higher(work: Array, a: Unsigned, line: Unsigned, below: Unsigned, patch: float, to: Unsigned,
+            rows: Unsigned) -> None:
+    """Write a column times u or v, plus patch times another column, into a third."""
     for i in range(rows):
-        work[to + i] = work[a + i] * work[b + i]
+        work[to + i] = work[a + i] * work[line + i] + patch * work[below + i]
 
 
 @kernel()
-def _write_system(work: Array, rows: Unsigned, degree: int, largest: float) -> None:
-    """Write the monomials' columns and the heights', each row times the root of its weight's share."""
-    first, u, v, height, weight = _FOUR * rows, np.uint64(0), rows, _TWO * rows, _THREE * rows
+def _write_system(work: Array, rows: Unsigned, degree: int, largest: float, patch: float) -> None:
+    """Write the monomials' columns and the heights', each row times the root of its weight's share.
+
+    With a patch m they are the monomials' means over it: E(u^(k+1)) = u·E(u^k) + k·m·E(u^(k-1)), which holds for
+    a Gaussian patch, and up to the third degree for any that is even.
+    """
+    first, height, weight = _FOUR * rows, _TWO * rows, _THREE * rows
     per_largest = 1.0 / largest
     for i in range(rows):
         work[first + i] = sqrt(work[weight + i] * per_largest)
-    lower, to = first, first + rows
+    below, lower, to = first, first, first + rows  # where the last degree but one, the last and this one begin
     for d in range(1, degree + 1):
-        for _ in range(d):
-            _product(work, lower, u, to, rows)
-            lower, to = lower + rows, to + rows
-        _product(work, lower - rows, v, to, rows)
-        to += rows
-    _product(work, first, height, to, rows)
+        begin = to
+        for j in range(d):
+            two_less = below + np.uint64(j) * rows if j < d - 1 else first
+            _higher(work, lower + np.uint64(j) * rows, np.uint64(0), two_less, (d - 1 - j) * patch, to, rows)
+            to += rows
+        _higher(work, begin - rows, rows, lower - rows if d > 1 else first, (d - 1) * patch, to, rows)
+        below, lower, to = lower, begin, to + rows
+    _higher(work, first, height, first, 0.0, to, rows)
 
 
 @kernel()
@@ -82,12 +89,14 @@ def _mean_height(work: Array, rows: Unsigned) -> float:
 
 
 @kernel()
-def fit(work: Array, rows: Unsigned, degree: int, coefficients: Array) -> int:
+def fit(work: Array, rows: Unsigned, degree: int, patch: float, coefficients: Array) -> int:
     """Write g's coefficients into (15,), 0 beyond its degree, and return its degree, which may be lower.
 
     work: flat, at least SCRATCH_COLUMNS·rows long, the first four columns of `rows` values u, v, height and
-    weight; the rest is overwritten. The degree is lowered until 1.5 points a coefficient have weight and no
-    column depends on others; degree 0 is the weighted mean. -1 and NaN where no point has weight.
+    weight; the rest is overwritten. patch: 0 when the polynomial is to pass through the points; else each stands
+    for a patch of the surface with this variance along u and along v, and the polynomial's mean over it is to. The
+    degree is lowered until 1.5 points a coefficient have weight and no column depends on others; degree 0 is the
+    weighted mean. -1 and NaN where no point has weight.
     """
     for k in range(COEFFICIENTS):
         coefficients[k] = 0.0
@@ -98,7 +107,7 @@ def fit(work: Array, rows: Unsigned, degree: int, coefficients: Array) -> int:
     while degree > 0 and 3 * terms(degree) > 2 * many:
         degree -= 1
     if degree > 0:
-        _write_system(work, rows, degree, largest)
+        _write_system(work, rows, degree, largest, patch)
         first, count = _FOUR * rows, np.uint64(terms(degree))
         right = first + count * rows
         factorise(work, first, rows, count)

@@ -29,7 +29,8 @@ _UNIT_ROUNDING = 2.3e-16
 
 class Look(NamedTuple):
     """What is seen at s: the quantity looked for, f, its slope along the ray or NaN, the energy or NaN, the surface,
-    and how many evaluations that took."""
+    and how many evaluations that took.
+    """
 
     s: float
     q: float
@@ -58,7 +59,6 @@ def look(what: int, sites: Sites, rule: Rule, how: Search, d: Vector, start: Sta
     v = evaluate_at(how.evaluate, near, x, rule, want, work, fit)
     slope, e, q, evaluations = nan, nan, v.f, 1
     if v.state == r.CONTINUE or v.state == r.UNDEFINED_NORMAL:
-        ahead = v.f / dot(v.n, d)
         if what == E_SLOPE:
             e = energy(how.energy, how.emphasise, near, x, d, v, rule.c, work)
             if has_slope(how.energy, how.emphasise):
@@ -71,8 +71,8 @@ def look(what: int, sites: Sites, rule: Rule, how: Search, d: Vector, start: Sta
             slope = dot(v.gradient, d)
             if slope != slope:
                 slope, evaluations = difference(near, x, d, rule, how, v.n, work, fit), 3
-        if rows.shape[0] > 0:
-            write_step(rows, row, sites, start, s, start.cell, x, v, ahead)
+    if rows.shape[0] > 0:
+        write_step(rows, row, sites, start, s, start.cell, x, v, v.f / dot(v.n, d))
     return Look(s, q, v.f, slope, e, v, evaluations)
 
 
@@ -91,7 +91,8 @@ def quantity(what: int, seen: Look) -> float:
 @kernel(STRICT)
 def inverse_quadratic(a: float, b: float, c: float, qa: float, qb: float, qc: float) -> float:
     """Share of the way from a to b where inverse quadratic interpolation puts the root, ½ where it is not to be
-    trusted [Chandrupatla 1997]; a: the newest place."""
+    trusted [Chandrupatla 1997]; a: the newest place.
+    """
     xi, phi = (a - b) / (c - b), (qa - qb) / (qc - qb)
     if phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi:
         return qa / (qb - qa) * (qc / (qb - qc)) + (c - a) / (b - a) * (qa / (qc - qa)) * (qb / (qc - qb))

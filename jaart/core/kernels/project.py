@@ -50,7 +50,7 @@ def projection(near: Near, x: Vector, rule: Rule, want: int, work: Array, coeffi
     foot = along(x, n, t * rule.h)
     weigh(near, foot, rule, w)
     write_places(near, foot, n, 1.0 / rule.h, work)
-    degree = fit(work, near.size, rule.degree, coefficients)
+    degree = fit(work, near.size, rule.degree, rule.patch, coefficients)
     if degree < 0:
         return no_value(r.FEW_NEIGHBOURS, off, s, shift)
     coefficients[0] += t

@@ -46,7 +46,8 @@ class Rule(NamedTuple):
 
     weight, normal: numbers of WEIGHTS and NORMALS; h: feature size; reach: surfels farther than this from x do
     not count; k: only so many nearest ones count, 0 = all; oriented: 1 to turn a covariance normal to the
-    surfels' side; degree: of the polynomial; c: of the Mahalanobis energy.
+    surfels' side; degree: of the polynomial; patch: variance of the patch that a surfel stands for, in h²,
+    0 for the point alone; c: of the Mahalanobis energy.
     """
 
     weight: int
@@ -56,6 +57,7 @@ class Rule(NamedTuple):
     k: int
     oriented: int
     degree: int
+    patch: float
     c: float
 
 

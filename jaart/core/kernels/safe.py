@@ -12,9 +12,9 @@ from math import ceil, nan
 from jaart.core.kernels import records as r
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import surfels_near
-from jaart.core.kernels.probe import F, F_SLOPE, Look, look, opposite, root_between
+from jaart.core.kernels.probe import F_SLOPE, F, Look, look, opposite, root_between
 from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, Start, Vector
-from jaart.core.kernels.stretch import fewer, hit_at, nothing_found, through
+from jaart.core.kernels.stretch import fewer, hit_at, nothing_found, state_of
 
 #: Length of the steps, in h.
 _STEP = 0.8
@@ -36,16 +36,18 @@ def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
                 work: Array, fit: Array) -> End:
     """The first surface within a stretch; arguments as of `step_search`."""
     size = int(surfels_near(sites, start.cell).size)
+    if size == 0:
+        return nothing_found(r.BACKGROUND, 0, 0, 0, 0, nan)
     count = max(int(ceil((start.high - start.low) / (_STEP * rule.h))), 1)
     state, looks, evaluations, lowered = r.BACKGROUND, 0, 0, 0
     a = look(F_SLOPE, sites, rule, how, d, start, start.low, rows, row, work, fit)
     looks, evaluations, lowered = 1, a.evaluations, fewer(a, rule)
-    if a.value.state == r.CONTINUE and through(start.before, a.f, a.value.n, d):
+    if opposite(start.before, a.f):
         end = hit_at(r.FLOOR, sites, rule, how, bounds, d, start, a.s, a.value, a.f, looks, evaluations,
                      evaluations * size, lowered, work, fit)
         if end.state == r.FLOOR:
             return end
-        state = end.state
+        state, evaluations = end.state, end.evaluations
     for i in range(1, count + 1):
         s = start.low + (start.high - start.low) * (i / count)
         b = look(F_SLOPE, sites, rule, how, d, start, s, rows, row + looks, work, fit)
@@ -55,17 +57,19 @@ def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
             inner, more, spent = root_between(F_SLOPE, sites, rule, how, d, start, a, b, _EXTREMUM * rule.h, a.f, rows,
                                               row + looks, work, fit)
             looks, evaluations = looks + more, evaluations + spent
-        if opposite(a.f, inner.f):
-            hit, more, spent = root_between(F, sites, rule, how, d, start, a, inner, how.arrived, nan, rows, row + looks,
-                                            work, fit)
+        for side in range(2):  # the way out of a dip counts where the way in is refused
+            low, high = (a, inner) if side == 0 else (inner, b)
+            if not opposite(low.f, high.f):
+                continue
+            hit, more, spent = root_between(F, sites, rule, how, d, start, low, high, how.arrived, nan, rows,
+                                            row + looks, work, fit)
             looks, evaluations = looks + more, evaluations + spent
-            if through(a.f, inner.f, hit.value.n, d):
-                end = hit_at(r.CONVERGED, sites, rule, how, bounds, d, start, hit.s, hit.value, hit.f, looks, evaluations,
-                             evaluations * size, lowered, work, fit)
-                if end.state == r.CONVERGED:
-                    return end
-                state = end.state
+            end = hit_at(r.CONVERGED, sites, rule, how, bounds, d, start, hit.s, hit.value, hit.f, looks, evaluations,
+                         evaluations * size, lowered, work, fit)
+            if end.state == r.CONVERGED:
+                return end
+            state, evaluations = end.state, end.evaluations
         if b.value.state != r.CONTINUE:
-            state = b.value.state
+            state = state_of(b.value, state)
         a = b
     return nothing_found(state, looks, evaluations, evaluations * size, lowered, a.f)

@@ -43,10 +43,12 @@ def fitted_normal(v: Value, to: Vector, rule: Rule, fit: Array) -> Vector:
 
 
 @kernel(STRICT)
-def true_normal(near: Near, x: Vector, rule: Rule, how: Search, work: Array, fit: Array) -> tuple[int, Vector]:
+def true_normal(near: Near, x: Vector, rule: Rule, how: Search, otherwise: Vector, work: Array,
+                fit: Array) -> tuple[int, Vector]:
     """-∇f/|∇f| at x on the side of n(x), and how many evaluations it took.
 
-    Closed form where there is one, else by central differences.
+    Closed form where there is one, else by central differences. otherwise: given where f has no gradient at x, as
+    a hit's last step may lead into a cell without surfels.
     """
     v = evaluate_at(how.evaluate, near, x, rule, r.WITH_GRADIENT, work, fit)
     g, evaluations = v.gradient, 1
@@ -56,4 +58,4 @@ def true_normal(near: Near, x: Vector, rule: Rule, how: Search, work: Array, fit
              difference(near, x, (0.0, 0.0, 1.0), rule, how, v.n, work, fit))
         evaluations = 7
     size = sqrt(dot(g, g))
-    return evaluations, (scaled(g, -like(scaled(g, -1.0), v.n) / size) if size > 0.0 else v.n)
+    return evaluations, (scaled(g, -like(scaled(g, -1.0), v.n) / size) if size > 0.0 else otherwise)

@@ -20,6 +20,7 @@ from jaart.core.kernels.records import Array, Bounds, End, Near, Rule, Search, S
 from jaart.core.kernels.roots import nearest_root
 from jaart.core.kernels.shown import difference, fitted_normal, true_normal
 from jaart.core.kernels.vectors import along, dot, frame, length, scaled
+from jaart.core.kernels.weigh import weigh
 
 #: A ray whose angle with the plane has a smaller sine runs along it.
 _PARALLEL = 1e-12
@@ -61,7 +62,7 @@ def next_step(how: Search, v: Value, ahead: float, s: float, s_before: float, ah
 
 
 @kernel(STRICT)
-def state_after(how: Search, bounds: Bounds, start: Start, s: float, step: float, v: Value, slope: float, h: float,
+def state_after(how: Search, bounds: Bounds, start: Start, s: float, step: float, v: Value, slope: float, rule: Rule,
                 inside: bool, near: Near, x: Vector, work: Array) -> int:
     """The state after a step that led to s: CONTINUE or an end.
 
@@ -70,8 +71,10 @@ def state_after(how: Search, bounds: Bounds, start: Start, s: float, step: float
     if not (inside and start.low <= s <= start.high and start.t + s > 0.0):
         return r.LEFT_TRUST
     short = (abs(v.f) if how.by_value == 1 else abs(step)) < how.arrived
-    if not short and abs(step * slope) > _ROUNDING * (abs(s) + h + length(x)):
+    if not short and abs(step * slope) > _ROUNDING * (abs(s) + rule.h + length(x)):
         return r.CONTINUE
+    if bounds.gap > 0.0:  # differences leave other weights
+        weigh(near, x, rule, work)
     state = judged(near, x, v, bounds, work)
     return r.FLOOR if state == r.CONVERGED and not short else state
 
@@ -94,7 +97,7 @@ def step_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
         v = evaluate_at(how.evaluate, near, x, rule, want, work, fit)
         state, slope, off = v.state, dot(v.n, d), length(v.off)
         used, evaluations = used + int(near.size), evaluations + 1
-        lowered += 1 if v.degree < rule.degree else 0
+        lowered += 1 if state == r.CONTINUE and v.degree < rule.degree else 0
         ahead = approach(v, d, slope, how.trust, rule, fit)
         steepness = dot(v.gradient, d)
         if state == r.CONTINUE and how.kind == r.NEWTON and steepness != steepness:
@@ -110,11 +113,13 @@ def step_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
             s_before, ahead_before, f_before = s, ahead, abs(v.f)
             s += step
             cell, x_next, inside = located(sites, start, d, s)
-            state = state_after(how, bounds, start, s, step, v, slope, rule.h, inside, near, x, work)
+            state = state_after(how, bounds, start, s, step, v, slope, rule, inside, near, x, work)
             if state == r.CONVERGED or state == r.FLOOR:
+                if how.kind == r.NEWTON and v.degree > 0:  # differences leave another fit
+                    v, evaluations = evaluate_at(how.evaluate, near, x, rule, want, work, fit), evaluations + 1
                 n = fitted_normal(v, scaled(d, step), rule, fit)
                 if how.true_normal == 1:
-                    more, n = true_normal(surfels_near(sites, cell), x_next, rule, how, work, fit)
+                    more, n = true_normal(surfels_near(sites, cell), x_next, rule, how, n, work, fit)
                     evaluations += more
                 hit = in_scene(sites, start.cell, along(start.base, d, s))
                 return End(state, start.t + s, hit, n, step, off, done + 1, evaluations, used, lowered, nan)

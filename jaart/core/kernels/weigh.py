@@ -66,7 +66,7 @@ def gaussian(near: Near, x: Vector, h: float, reach: float, w: Array) -> tuple[f
         y = square_distance(near, i, x, per_h)
         w[i] = exp_minus(y) if y <= square else 0.0
         s += w[i]
-    if s > _FAINT:
+    if s > _FAINT or near.size == 0:
         return s, 0.0
     nearest_one = nearest(near, x, per_h)
     least = square_distance(near, nearest_one, x, per_h)

@@ -1,0 +1,44 @@
+"""What the words of the settings, such as auto, stand for in the scene that is open."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from jaart.core.errors import SettingsError
+from jaart.core.parameter import Length
+from jaart.core.settings import PARAMETERS
+
+if TYPE_CHECKING:
+    from jaart.gui.model import SceneModel
+    from jaart.gui.tasks import Known
+
+#: Where a parameter's value stands among the chosen ones, if its name is another there.
+_CALLED = {"max_off_centre": "off_centre", "max_nearest": "nearest"}
+
+
+def meant(name: str, model: SceneModel) -> Any:
+    """What the word of a setting stands for at present; None where nobody knows, or where it is no value."""
+    about, camera, scene = PARAMETERS[name], model.camera, model.scene
+    if name == "raster":
+        return scene.model.raster if scene is not None and scene.model is not None else None
+    if name == "light":
+        return tuple(float(f"{n:.4g}") for n in camera.eye) if camera is not None else None
+    if not about.choices or model.known is None:
+        return None
+    value = getattr(model.known.values, _CALLED.get(name, name), None)
+    return _length(about.name, value, model.known, model.kind) if isinstance(value, float) else value
+
+
+def _length(name: str, value: float, known: Known, kind: str) -> Any:
+    """A chosen number as it would be typed: lengths of a cloud in its spacing; None for an infinite one."""
+    about = PARAMETERS[name]
+    if not math.isfinite(value):
+        return None
+    wanted: Any = float(f"{value:.6g}")
+    if about.kind == "length" and kind == "cloud" and known.spacing > 0:
+        wanted = Length(float(f"{value / known.spacing:.4g}"), "s")
+    try:
+        return about.check(wanted)
+    except SettingsError:
+        return None

@@ -1,0 +1,61 @@
+"""Which settings suit a scene; what does not goes back to a preset's value."""
+
+from __future__ import annotations
+
+from jaart.core import meaning
+from jaart.core.errors import SettingsError
+from jaart.core.parameter import Length
+from jaart.core.scene import Scene
+from jaart.core.settings import PARAMETERS, Settings
+from jaart.gui.values import text_of
+
+
+def suited(scene: Scene, settings: Settings, base: Settings, before: Scene | None = None) -> tuple[Settings, str]:
+    """Settings that make sense in a scene, and a line that says what was changed, "" for nothing.
+
+    base: the preset whose values replace those that do not suit; before: the scene that the settings were made for:
+    lengths in cells say nothing in a cloud, nor the other way round. May take seconds for a large cloud.
+    """
+    kept = _in_kind(scene, settings, base, before)
+    for _ in PARAMETERS:
+        try:
+            meaning.check(scene, kept)
+        except SettingsError as error:
+            better = _without(kept, base, refused_name(str(error)))
+            if better is None:
+                break
+            kept = better
+        else:
+            break
+    changed = [f"{name} = {text_of(getattr(kept, name))}" for name in PARAMETERS
+               if getattr(kept, name) != getattr(settings, name)]
+    return kept, f"Put back, for a {scene.kind} has no other use for it: {', '.join(changed)}" if changed else ""
+
+
+def refused_name(message: str) -> str:
+    """The setting that a message of the core refuses, "" where it names none."""
+    words = message.replace(":", " ").split()
+    return words[0] if words and words[0] in PARAMETERS else ""
+
+
+def _in_kind(scene: Scene, settings: Settings, base: Settings, before: Scene | None) -> Settings:
+    """The settings with what is for other kinds of scenes as the preset has it."""
+    moved = before is not None and (before.kind == "cloud") != (scene.kind == "cloud")
+    values = {}
+    for name, about in PARAMETERS.items():
+        value = getattr(settings, name)
+        absolute = about.kind == "length" or name == "level"
+        if scene.kind not in about.scenes:
+            values[name] = getattr(base, name)
+        elif moved and absolute and not isinstance(value, str) and not (isinstance(value, Length) and value.unit):
+            preset = getattr(base, name)
+            values[name] = about.default if isinstance(preset, Length) and not preset.unit else preset
+    return settings.replace(**values)
+
+
+def _without(settings: Settings, base: Settings, name: str) -> Settings | None:
+    """The settings with one of the preset's value, or else its default; None where it has both already."""
+    for value in (getattr(base, name), PARAMETERS[name].default) if name else ():
+        if getattr(settings, name) != value:
+            return settings.replace(**{name: value})
+    return None

@@ -1,0 +1,56 @@
+"""How large things are around a ray: cells in a lattice, balls in a cloud, and lengths as text."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jaart.core.cloud_surfels import Points
+from jaart.core.records import Trace
+
+Array = NDArray[np.float64]
+
+
+def is_cloud(trace: Trace) -> bool:
+    """Whether the ray goes through a cloud, and so through balls instead of cells."""
+    return isinstance(trace.surfels, Points)
+
+
+def unit(trace: Trace) -> str:
+    """What lengths count in."""
+    return "units" if is_cloud(trace) else "cells"
+
+
+def size(trace: Trace) -> float:
+    """The length that drawings are scaled by: a cell, or the radius of the usual ball that the ray pierces."""
+    if not is_cloud(trace):
+        return 1.0
+    radius = float(np.median(trace.balls[:, 3])) if len(trace.balls) else 0.0
+    return radius or float(np.linalg.norm(trace.high - trace.low)) / 100 or 1.0
+
+
+def text(trace: Trace, length: float, places: int = 4, sign: str = "") -> str:
+    """A length with so many places in a lattice, and with as many digits below the balls' size in a cloud."""
+    return f"{length:{sign}.{places + max(0, -math.floor(math.log10(size(trace))))}f}"
+
+
+def stretches(trace: Trace) -> Array:
+    """Where the ray enters and leaves each cell or ball (N, 2), t along it."""
+    if not is_cloud(trace):
+        return np.stack([trace.borders[:-1], trace.borders[1:]], axis=1)
+    to_ball = trace.balls[:, :3] - trace.origin
+    foot = to_ball @ trace.direction
+    aside = np.linalg.norm(to_ball - foot[:, None] * trace.direction, axis=1)
+    half = np.sqrt(np.maximum((trace.balls[:, 3] - aside) * (trace.balls[:, 3] + aside), 0.0))
+    return np.stack([np.maximum(foot - half, 0.0), foot + half], axis=1)
+
+
+def no_steps(trace: Trace) -> str:
+    """Why a ray has no step to show."""
+    if trace.hit:
+        return "This surface is hit at once:\nno step is taken."
+    where = "pierces no ball" if is_cloud(trace) else "crosses no cell with a surfel"
+    return f"This ray {where}:\nno step was taken." if not len(trace.curves.t) or not np.isfinite(
+        trace.curves.tangent).any() else "This ray misses the surface:\nno step was taken."
