@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import json
-import signal
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from threading import Event
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -17,6 +13,7 @@ from jaart import cli_arguments as typed
 from jaart import cli_files as files
 from jaart import cli_isosurface as meshes
 from jaart import cli_report as report
+from jaart.cli_interrupt import interruptible
 from jaart.cli_options import (
     DEFAULT_PRESET,
     DEFAULT_SIZE,
@@ -29,11 +26,7 @@ from jaart.cli_options import (
     SizeText,
     Threads,
 )
-from jaart.core.errors import Cancelled, JaartError, SettingsError
-
-if TYPE_CHECKING:
-    from jaart.core.scene import Scene
-    from jaart.core.settings import Settings
+from jaart.core.errors import JaartError
 
 #: What the parser raises for wrong usage; it has no public name of its own.
 _USAGE: Any = typer.BadParameter.__mro__[1]
@@ -82,7 +75,8 @@ def _start(version: Annotated[bool, typer.Option("--version", help="Say the vers
 def gui(scene: SceneName = "splash",
         pick: Annotated[str | None, typer.Option(metavar="X,Y", help="Pick this pixel of the picture.")] = None,
         screenshot: Annotated[Path | None, typer.Option(metavar="FILE", help="Save the window here and end.")] = None,
-        frame: Frame = None, camera: CameraTexts = None, preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None) -> int:
+        frame: Frame = None, camera: CameraTexts = None, preset: PresetName = DEFAULT_PRESET,
+        set_: SetTexts = None) -> int:
     """Open the window."""
     pixel = None if pick is None else typed.pixel(pick, "--pick")
     settings = typed.settings(preset, set_ or [])
@@ -90,7 +84,7 @@ def gui(scene: SceneName = "splash",
         typed.output(screenshot, "--screenshot", ".png")
     view = None
     if camera or set_ or preset != DEFAULT_PRESET:
-        loaded, settings = _open(scene, frame, settings, preset, set_)
+        loaded, settings = files.open_scene(scene, frame, settings, preset, set_)
         view = typed.camera(camera, loaded, settings) if camera else None
 
     from jaart.gui.app import run as open_window
@@ -106,9 +100,8 @@ def info(scene: SceneName, frame: Frame = None,
     Kind, size, counts, value range, spacing, exact solids, and what was repaired on reading.
     """
     from jaart.core.io import load
-    from jaart.core.settings import Settings
 
-    record = report.scene_record(load(scene, frame), Settings())
+    record = report.scene_record(load(scene, frame))
     print(json.dumps(record, indent=1, ensure_ascii=False) if as_json else report.scene_table(record))
 
 
@@ -123,8 +116,8 @@ def settings(name: Annotated[str | None, typer.Argument(metavar="NAME", help=(
 
 @app.command()
 def render(
-        scene: SceneName, size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None, preset: PresetName = DEFAULT_PRESET,
-        set_: SetTexts = None, frame: Frame = None,
+        scene: SceneName, size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None,
+        preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None, frame: Frame = None,
         map_: Annotated[str, typer.Option("--map", metavar="NAME", help=(
             "What colours mean: shaded, iterations, evaluations, off_centre, depth, status, distance_error, "
             "normal_error."))] = "shaded",
@@ -139,7 +132,7 @@ def render(
     To files; without --output and --hits to SCENE.png in this folder.
     """
     if rays is not None:
-        _check_rays_alone(camera, output, hits, map_)
+        typed.check_rays_alone(camera, output, hits, map_)
         if size != DEFAULT_SIZE:
             print("jaart: note: --size has no meaning with --rays", file=sys.stderr)
     elif output is None and hits is None:
@@ -149,8 +142,8 @@ def render(
     if hits is not None:
         typed.output(hits, "--hits", ".npz")
     shape, chosen = typed.size(size), typed.settings(preset, set_ or [])
-    loaded, chosen = _open(scene, frame, chosen, preset, set_)
-    _check_map(map_, loaded)
+    loaded, chosen = files.open_scene(scene, frame, chosen, preset, set_)
+    files.check_map(map_, loaded)
     listed = None if rays is None else typed.rays(rays)
     view = None if rays is not None else typed.camera(camera or [], loaded, chosen, shape)
 
@@ -159,7 +152,7 @@ def render(
     from jaart.core.render import render as trace_rays
 
     report.say_compiling()
-    with _interruptible() as cancel:
+    with interruptible() as cancel:
         with report.progress_bar() as progress:
             found = trace_rays(loaded, chosen, view, shape, rays=listed, threads=threads, progress=progress,
                                cancel=cancel)
@@ -185,7 +178,7 @@ def trace(
         direction: Annotated[str | None, typer.Option(metavar="x,y,z", help="Where it goes, of any length.")] = None,
         preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None, frame: Frame = None) -> None:
     """Follow one ray and write every step it took."""
-    at, ray = _which_ray(pixel, origin, direction)
+    at, ray = typed.which_ray(pixel, origin, direction)
     typed.output(output, "--output", ".json", ".csv", ".svg")
     shape, chosen = typed.size(size), typed.settings(preset, set_ or [])
     if at is None and size != DEFAULT_SIZE:
@@ -194,7 +187,7 @@ def trace(
         typed.check_pixel(at, shape)
     elif camera:
         raise typed.usage("--camera", "has no meaning with --origin and --direction")
-    (loaded, chosen), up = _open(scene, frame, chosen, preset, set_), (0.0, 0.0, 1.0)
+    (loaded, chosen), up = files.open_scene(scene, frame, chosen, preset, set_), (0.0, 0.0, 1.0)
 
     from jaart.core.trace import trace as follow
 
@@ -222,14 +215,14 @@ def statistics(
     """
     typed.output(output, "--output", ".csv", ".svg")
     shape, chosen = typed.size(size), typed.settings(preset, set_ or [])
-    loaded, chosen = _open(scene, frame, chosen, preset, set_)
+    loaded, chosen = files.open_scene(scene, frame, chosen, preset, set_)
     view = typed.camera(camera or [], loaded, chosen, shape)
 
     from jaart.core.quality import quality
     from jaart.core.render import render as trace_rays
 
     report.say_compiling()
-    with _interruptible() as cancel, report.progress_bar() as progress:
+    with interruptible() as cancel, report.progress_bar() as progress:
         found = trace_rays(loaded, chosen, view, shape, threads=threads, progress=progress, cancel=cancel)
     errors = quality(found, loaded)
     print(report.hits_line(found, loaded, errors))
@@ -245,11 +238,11 @@ def isosurface(
     """Write the surface where an energy has a level, as a mesh with normals."""
     meshes.check_output(output)
     chosen = meshes.asked(energy, level, subdivide, preset, set_ or [])
-    loaded, chosen = _open(scene, frame, chosen, preset, set_, meshes.IMPLIED)
+    loaded, chosen = files.open_scene(scene, frame, chosen, preset, set_, meshes.IMPLIED)
     along = meshes.direction_of(energy, direction, camera or [], loaded, chosen)
     report.say_compiling()
-    with _interruptible() as cancel:
-        meshes.write(loaded, chosen, energy, along, output, cancel)
+    with interruptible() as cancel, report.progress_bar("layer") as progress:
+        meshes.write(loaded, chosen, energy, along, output, cancel, progress)
 
 
 @app.command(hidden=True)
@@ -259,72 +252,10 @@ def preview(scene: SceneName,
     from jaart.cli_preview import write_preview
 
     report.say_compiling()
-    loaded = _load(scene, None)
+    loaded = files.load(scene, None)
     output.mkdir(parents=True, exist_ok=True)
     for path in write_preview(loaded, output):
         print(f"wrote {path}")
-
-
-def _load(source: str, frame: int | None) -> Scene:
-    from jaart.core.io import BUILT_IN, load
-
-    scene = load(source, frame)
-    report.note(() if source in BUILT_IN else scene.notes)
-    return scene
-
-
-def _open(source: str, frame: int | None, chosen: Settings, preset: str, assignments: list[str] | None,
-          implied: tuple[str, ...] = ()) -> tuple[Scene, Settings]:
-    """A scene and the settings as it can take them; implied: names of settings that other options gave."""
-    scene = _load(source, frame)
-    fitting, notes = typed.suit(scene, chosen, assignments or [], implied)
-    report.note(notes if preset != DEFAULT_PRESET else ())  # that one is for every scene
-    return scene, fitting
-
-
-def _check_rays_alone(camera: list[str] | None, output: Path | None, hits: Path | None, map_: str) -> None:
-    if hits is None:
-        raise typed.usage("--rays", "needs --hits FILE.npz to write to")
-    for option, given in (("--camera", camera), ("--output", output), ("--map", map_ != "shaded")):
-        if given:
-            raise typed.usage(option, "has no meaning with --rays, which make no picture")
-
-
-def _check_map(name: str, scene: Scene) -> None:
-    from jaart.core.maps import find
-    from jaart.core.quality import known
-
-    find(name)
-    if name.endswith("_error") and not known(scene):
-        raise SettingsError(f"map {name}: needs an exact surface, which nobody knows of {scene.source}")
-
-
-def _which_ray(pixel: str | None, origin: str | None,
-               direction: str | None) -> tuple[tuple[int, int] | None, typed.Ray | None]:
-    """The pixel, or origin and direction: whichever was typed."""
-    if pixel is not None and origin is None and direction is None:
-        return typed.pixel(pixel, "--pixel"), None
-    if pixel is None and origin is not None and direction is not None:
-        return None, (typed.vector(origin, "--origin"), typed.vector(direction, "--direction"))
-    raise typed.usage("--pixel", "expected either --pixel X,Y or both --origin and --direction x,y,z")
-
-
-@contextmanager
-def _interruptible() -> Iterator[Event]:
-    """An event that Ctrl-C sets before it is raised, so that no thread works on."""
-    cancel = Event()
-
-    def stop(*_: object) -> None:
-        cancel.set()
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGINT, stop)
-    try:
-        yield cancel
-    except Cancelled:
-        raise KeyboardInterrupt from None
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def _fail(message: str, status: int) -> int:

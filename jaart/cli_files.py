@@ -1,39 +1,96 @@
-"""Writes what the commands were asked for, in the kind of file that its name says."""
+"""What the commands read and write: scenes with settings that fit them, and files of the kind that their name says."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from jaart import cli_arguments as typed
+from jaart import cli_report as report
+from jaart.cli_options import DEFAULT_PRESET
+from jaart.core.errors import SettingsError
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from jaart.core.colours import Bytes
     from jaart.core.records import Hits, Quality, Trace
+    from jaart.core.scene import Scene
+    from jaart.core.settings import Settings
 
 
-def write_render(found: Hits, errors: Quality | None, map_: str, output: Path | None, hits: Path | None) -> None:
-    """Write the picture and the hits where a file is named for them, and say so."""
-    from jaart.core.export import save_hits, save_picture
+def load(source: str, frame: int | None) -> Scene:
+    """The scene of a name; what was repaired on reading is said."""
+    from jaart.core.io import BUILT_IN, load
 
-    if output is not None:
-        from jaart.core.shade import shade
-
-        save_picture(shade(found, map_, errors), output)
-        print(f"wrote {output}{_range(found, errors, map_)}")
-    if hits is not None:
-        save_hits(found, hits)
-        print(f"wrote {hits}")
+    scene = load(source, frame)
+    report.note(() if source in BUILT_IN else scene.notes)
+    return scene
 
 
-def _range(found: Hits, errors: Quality | None, map_: str) -> str:
-    """What the ends of a map's colours stand for."""
+def open_scene(source: str, frame: int | None, chosen: Settings, preset: str, assignments: list[str] | None,
+               implied: tuple[str, ...] = ()) -> tuple[Scene, Settings]:
+    """A scene, and the settings as it can take them; implied: names of settings that other options gave."""
+    scene = load(source, frame)
+    fitting, notes = typed.suit(scene, chosen, assignments or [], implied)
+    report.note(notes if preset != DEFAULT_PRESET else ())  # that one is for every scene
+    return scene, fitting
+
+
+def check_map(name: str, scene: Scene) -> None:
+    """Raise SettingsError for a map that there is not, or not of this scene."""
+    from jaart.core.maps import find
+    from jaart.core.quality import known
+
+    find(name)
+    if name.endswith("_error") and not known(scene):
+        raise SettingsError(f"map {name}: needs an exact surface, which nobody knows of {scene.source}")
+
+
+def write_picture(colours: Bytes, found: Hits, scene: Scene, errors: Quality | None, map_: str, output: Path) -> None:
+    """Write a picture and say so, with what its colours mean."""
+    from jaart.core.export import save_picture
+
+    save_picture(colours, output)
+    print(f"wrote {output}{_meaning(found, scene, errors, map_)}")
+
+
+def write_hits(found: Hits, path: Path) -> None:
+    """Write the hits and say so."""
+    from jaart.core.export import save_hits
+
+    save_hits(found, path)
+    print(f"wrote {path}")
+
+
+def write_statistics(found: Hits, errors: Quality | None, output: Path) -> None:
+    """Write the statistics of a picture as .csv or .svg, and say so."""
+    from jaart.core.export import save_statistics_csv
+    from jaart.core.statistics import statistics
+
+    counted = statistics(found, errors)
+    if output.suffix.lower() == ".csv":
+        save_statistics_csv(counted, output)
+    else:
+        from jaart.plot.statistics import statistics_figure
+
+        save_figure(statistics_figure(counted), output)
+    print(f"wrote {output}")
+
+
+def _meaning(found: Hits, scene: Scene, errors: Quality | None, map_: str) -> str:
+    """Which normals a picture is shaded with, or what the ends of a map's colours stand for."""
     from jaart.core.maps import MAPS, scale
 
-    if map_ in ("shaded", "status"):
+    if map_ == "shaded":
+        return f", shading_normal = {found.settings.shading_normal}"
+    if map_ == "status":
         return ""
     low, high = scale(map_, found, errors)
-    unit = f" {MAPS[map_].unit}" if MAPS[map_].unit else ""
-    return f", colours from {low:g} to {high:g}{unit}, what lies beyond has the last colour"
+    unit = MAPS[map_].unit
+    if unit == "cells" and scene.kind == "cloud":
+        unit = "spacings" if map_ == "distance_error" else "cloud units"
+    return f", colours from {low:g} to {high:g} {unit}".rstrip() + ", what lies beyond has the last colour"
 
 
 def write_trace(followed: Trace, output: Path, up: tuple[float, float, float]) -> None:

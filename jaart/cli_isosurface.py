@@ -11,6 +11,7 @@ from jaart import cli_arguments as typed
 from jaart.core.errors import SettingsError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from threading import Event
 
     from jaart.core.contour import Mesh
@@ -37,6 +38,8 @@ def asked(energy: str, level: str | None, subdivide: int | None, preset: str, as
 
     if energy not in NAMES:
         raise SettingsError(f"--energy {energy}: expected {', '.join(NAMES)}")
+    if energy == "fill_level" and subdivide is not None:
+        raise typed.usage("--subdivide", "has no meaning with --energy fill_level")
     own = ["method=fill_level"]
     if energy != "fill_level":
         own = ["method=isosurface", f"energy={'tangent' if energy == DIRECTED else energy}"]
@@ -72,12 +75,13 @@ def check_output(output: Path) -> None:
     typed.output(output, "--output", *SUFFIXES)
 
 
-def write(scene: Scene, settings: Settings, energy: str, direction: Any, output: Path, cancel: Event) -> None:
+def write(scene: Scene, settings: Settings, energy: str, direction: Any, output: Path, cancel: Event,
+          progress: Callable[[int, int], None] | None = None) -> None:
     """Make the mesh, write it and say so."""
     from jaart.core.isosurface import isosurface
     from jaart.core.mesh_files import save_mesh
 
-    mesh: Mesh = isosurface(scene, settings, energy, direction=direction, cancel=cancel)
+    mesh: Mesh = isosurface(scene, settings, energy, direction=direction, cancel=cancel, progress=progress)
     save_mesh(mesh, output, scene.spacing, scene.origin)
     print(f"{len(mesh.vertices)} vertices, {len(mesh)} triangles")
     print(f"wrote {output}")

@@ -15,7 +15,8 @@ DEFAULT_SIZE = "512x512"
 DEFAULT_PRESET = "best"
 _GROUPS = ", ".join(dict.fromkeys(about.group.lower() for about in PARAMETERS.values()))
 
-SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="A file, or a built-in scene: splash, standard, bumpy.")]
+SceneName = Annotated[str, typer.Argument(metavar="SCENE", help=(
+    "A file, or a built-in scene: splash, standard, bumpy."))]
 SizeText = Annotated[str, typer.Option("--size", metavar="WxH", help="Pixels of the picture.")]
 CameraTexts = Annotated[list[str] | None, typer.Option("--camera", metavar="K=V ...", help=(
     "eye=x,y,z target=x,y,z up=x,y,z fov=degrees (across the longer side) or ortho=width; "

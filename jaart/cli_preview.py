@@ -13,9 +13,10 @@ from jaart.core.quality import quality
 from jaart.core.records import Hits
 from jaart.core.render import render
 from jaart.core.scene import Scene
-from jaart.core.settings import Settings
+from jaart.core.settings import preset
 from jaart.core.shade import shade
 from jaart.core.statistics import statistics
+from jaart.core.suited import suited
 from jaart.core.trace import trace
 
 
@@ -24,11 +25,11 @@ def write_preview(scene: Scene, folder: Path) -> list[Path]:
     from jaart.plot.statistics import statistics_figure
     from jaart.plot.trace import trace_figure
 
-    settings = Settings()
+    settings = suited(scene, preset("best"))[0]
     hits = render(scene, settings)
     name = Path(scene.source).stem
     files = [folder / f"{name}{end}" for end in (".png", "-ray.svg", "-statistics.svg")]
-    save_picture(shade(hits), files[0])
+    save_picture(shade(hits, scene=scene), files[0])
     ray = middle_hit(hits)
     followed = trace(scene, settings, hits.origin[ray], hits.direction[ray], _pixel(hits, ray))
     save_figure(trace_figure(followed, up=_up(hits.camera)), files[1])

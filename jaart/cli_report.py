@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import platform
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import jaart
+from jaart.cli_options import DEFAULT_PRESET
 
 if TYPE_CHECKING:
     from jaart.core.records import Hits, Quality, Trace
@@ -25,9 +26,14 @@ def versions() -> str:
             f"numba {version('numba')}, {EXPAT_VERSION.replace('_', ' ')}")
 
 
-def scene_record(scene: Scene, settings: Settings) -> dict[str, Any]:
+def scene_record(scene: Scene) -> dict[str, Any]:
     """What a scene holds, in plain numbers and words; lengths in cells, spacing and origin as in the file."""
-    return _cloud_record(scene) if scene.kind == "cloud" else _lattice_record(scene, settings)
+    if scene.kind == "cloud":
+        return _cloud_record(scene)
+    from jaart.core.settings import preset
+    from jaart.core.suited import suited
+
+    return _lattice_record(scene, suited(scene, preset(DEFAULT_PRESET))[0])
 
 
 def _cloud_record(scene: Scene) -> dict[str, Any]:
@@ -45,11 +51,11 @@ def _cloud_record(scene: Scene) -> dict[str, Any]:
 
 
 def _lattice_record(scene: Scene, settings: Settings) -> dict[str, Any]:
-    from jaart.core import lattice, prepare
+    from jaart.core import filters, lattice, prepare
 
     levels = prepare.levels(scene, settings)
     surfels = prepare.surfels(scene, settings)
-    interface = lattice.interface_cells(levels, settings.neighbours, settings.border)
+    interface = lattice.interface_cells(filters.filtered(levels, settings), settings.neighbours, settings.border)
     solids = None if scene.model is None else [_solid(s) for s in scene.model.solids]
     return {
         "source": scene.source, "kind": scene.kind, "size": list(levels.shape), "cells": int(levels.size),
@@ -96,16 +102,51 @@ def _lattice_rows(record: dict[str, Any]) -> list[tuple[str, Any]]:
     ]
 
 
-def hits_line(hits: Hits, quality: Quality | None = None) -> str:
-    """One line on a picture or a list of rays, and how the rays ended."""
+def hits_line(hits: Hits, scene: Scene, quality: Quality | None = None) -> str:
+    """One line on a picture or a list of rays, how the rays ended, and what they took of a cloud."""
     evaluations = hits.evaluations.sum() / max(1, len(hits))
     shape = f"{hits.size[0]}x{hits.size[1]}: " if hits.size else ""
-    ends = ", ".join(f"{count} {name}" for name, count in hits.counts().items()) or "no rays"
-    exact = "" if quality is None or not quality.relevant else (
-        f"\n  against the exact solids: delta {quality.delta:.4f}, delta_p {quality.delta_p:.4f} cells, "
-        f"delta_n {quality.delta_n:.4f}")
-    return (f"{shape}{int(hits.hit.sum())} of {len(hits)} rays hit, {evaluations:.2f} evaluations a ray, "
-            f"prepared in {1000 * hits.prep_s:.0f} ms, traced in {1000 * hits.ray_s:.0f} ms\n  {ends}{exact}")
+    lines = [f"{shape}{int(hits.hit.sum())} of {len(hits)} rays hit, {evaluations:.2f} evaluations a ray, "
+             f"prepared in {1000 * hits.prep_s:.0f} ms, traced in {1000 * hits.ray_s:.0f} ms",
+             ", ".join(f"{count} {name}" for name, count in hits.counts().items()) or "no rays"]
+    lines += _taken(hits, scene)
+    if quality is not None and quality.relevant:
+        unit = "spacings" if scene.kind == "cloud" else "cells"
+        lines.append(f"against the exact surface: delta {quality.delta:.4f}, delta_p {quality.delta_p:.4f} {unit}, "
+                     f"delta_n {quality.delta_n:.4f}")
+    return "\n  ".join(lines)
+
+
+def _taken(hits: Hits, scene: Scene) -> list[str]:
+    """Balls gathered and planes or polynomials kept at their centres, so far; degrees lowered."""
+    from jaart.core.balls import CloudTracer
+    from jaart.core.prepare import prepared
+
+    parts = []
+    tracer = prepared(scene, hits.settings).tracer
+    if isinstance(tracer, CloudTracer):
+        fits = f", {_count(tracer.fits, 'fit')} at their centres beside the evaluations" if tracer.fits else ""
+        parts.append(f"{_count(tracer.gathered, 'ball')} gathered{fits}")
+    if lowered := int(hits.lowered.sum()):
+        parts.append(f"{_count(lowered, 'evaluation')} of a lower degree than {hits.settings.degree}")
+    return ["; ".join(parts)] if parts else []
+
+
+def say_notes(scene: Scene, settings: Settings) -> None:
+    """Say on stderr what a person should know of a cloud's normals and balls."""
+    from jaart.core import cloud
+    from jaart.core.cloud_surfels import Points
+    from jaart.core.prepare import prepared
+
+    if scene.kind == "cloud":
+        points = prepared(scene, settings).surfels
+        note((*(points.notes if isinstance(points, Points) else ()), *cloud.notes(scene, settings.ball_k)))
+
+
+def note(texts: Iterable[str]) -> None:
+    """Say on stderr what is no error, a line each."""
+    for text in texts:
+        print(f"jaart: note: {text}", file=sys.stderr)
 
 
 def trace_line(trace: Trace) -> str:
@@ -113,8 +154,10 @@ def trace_line(trace: Trace) -> str:
     s = trace.summary()
     name = "ray" if trace.pixel is None else f"pixel {trace.pixel[0]},{trace.pixel[1]}"
     at = f" at t = {s['t']:.6g}, point {_words(trace.point)}" if trace.hit else ""
+    balls = len(trace.balls)
+    passed = f"{_count(balls, 'ball')} pierced" if balls else f"{_count(s['cells'], 'cell')} crossed"
     return f"{name}: {s['status']}{at}; {_count(s['steps'], 'step')} from {_count(s['starts'], 'start')}, " \
-           f"{_count(s['cells'], 'cell')} crossed"
+           f"{passed}"
 
 
 def say_compiling() -> None:
@@ -126,14 +169,14 @@ def say_compiling() -> None:
 
 
 @contextmanager
-def progress_bar() -> Iterator[Callable[[int, int], None] | None]:
+def progress_bar(unit: str = "ray") -> Iterator[Callable[[int, int], None] | None]:
     """A bar on a terminal for work of over a second, None elsewhere."""
     if not sys.stderr.isatty():
         yield None
         return
     from tqdm import tqdm
 
-    with tqdm(unit="ray", unit_scale=True, delay=1.0, leave=False) as bar:
+    with tqdm(unit=unit, unit_scale=True, delay=1.0, leave=False) as bar:
         def progress(done: int, total: int) -> None:
             bar.total = total
             bar.update(done - bar.n)

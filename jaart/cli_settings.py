@@ -44,11 +44,12 @@ def _group(title: str, held: list[Parameter]) -> str:
 
 def _parameter(about: Parameter) -> str:
     """Name and default, what may be typed, and what it means."""
-    unit = f", in {about.unit}" if about.unit else ""
+    unit = f", in {'cells or cloud units' if about.unit == 'units' else about.unit}" if about.unit else ""
     lines = [f"default {shown(getattr(Settings(), about.name))}; {about.expected}{unit}"]
     if about.scenes != KINDS:
         lines.append(f"for a {' or a '.join(about.scenes)} only")
-    lines.append(f"{about.help} {about.source}".rstrip())
+    source = about.source.replace(" ", "\N{NO-BREAK SPACE}")  # it is not torn apart
+    lines.append(f"{about.help} {source}".rstrip())
     return _beside(about.name, lines)
 
 
@@ -65,7 +66,7 @@ def _beside(name: str, lines: list[str]) -> str:
     """A name with lines beside it, wrapped."""
     wrapped = [part for line in lines for part in textwrap.wrap(line, _WIDTH - _NAMES, break_on_hyphens=False)]
     first = f"  {name:<{_NAMES - 2}}{wrapped[0]}"
-    return "\n".join([first, *(" " * _NAMES + line for line in wrapped[1:])])
+    return "\n".join([first, *(" " * _NAMES + line for line in wrapped[1:])]).replace("\N{NO-BREAK SPACE}", " ")
 
 
 def shown(value: object) -> str:

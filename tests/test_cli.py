@@ -20,6 +20,7 @@ from jaart.__main__ import main
 from jaart.core import prepare
 from jaart.core.records import STATUS_NAMES
 from jaart.core.resources import resource
+from jaart.core.settings import PARAMETERS, PRESETS
 
 SMALL = ["--size", "40x30"]
 
@@ -84,6 +85,7 @@ def test_a_misspelt_verb_is_no_scene(capsys):
     ["trace", "standard", "--output", "a.json", "--origin", "1,1", "--direction", "1,1,1"],
     ["trace", "standard", "--output", "a.txt", "--pixel", "1,1"],
     ["trace", "standard", "--output", "a.csv", "--origin", "1,1,1", "--direction", "1,1,1", "--camera", "fov=3"],
+    ["statistics", "standard"], ["statistics", "standard", "--output", "a.png"],
     ["gui", "standard", "--pick", "1;2"], ["gui", "standard", "--screenshot", "a.txt"],
 ])
 def test_wrong_usage_ends_with_2(capsys, arguments):
@@ -96,11 +98,18 @@ def test_wrong_usage_ends_with_2(capsys, arguments):
     (["render", "standard", "--size", "5x20000"], "size 5x20000"),
     (["render", "standard", "--set", "raduis=3"], "did you mean radius?"),
     (["render", "standard", "--set", "radius=-3"], "radius = '-3': expected"),
-    (["render", "standard", "--set", "shading=diffuse", "ambient=0.2"], "ambient has no meaning"),
-    (["render", "splash", "--set", "raster=20"], "raster has no meaning for splash"),
+    (["render", "standard", "--set", "shading=diffuse", "ambient=0.2"], "ambient has no meaning beside"),
+    (["render", "splash", "--set", "raster=20"], "raster has no meaning in a lattice; it is for a model"),
     (["render", "standard", "--preset", "worst"], "no preset is called 'worst'"),
     (["render", "standard", "--map", "mood"], "no map is called 'mood'"),
-    (["render", "splash", "--map", "normal_error"], "needs exact solids"),
+    (["render", "splash", "--map", "normal_error"], "needs an exact surface"),
+    (["render", "bumpy", "--set", "placement=exact"], "placement has no meaning in a cloud; it is for a lattice"),
+    (["render", "bumpy", "--preset", "thesis", "--set", "neighbourhood=cell_ball"], "neighbourhood = cell_ball: a cl"),
+    (["render", "splash", "--set", "ball_k=3"], "ball_k has no meaning in a lattice; it is for a cloud"),
+    (["render", "splash", "--set", "method=off_centre", "search=newton"], "search = newton: a least energy"),
+    (["statistics", "splash", "--set", "raster=9", "--output", "a.csv"], "raster has no meaning in a lattice"),
+    (["trace", "splash", "--pixel", "1,1", "--set", "orient=none", "--output", "a.csv"], "orient has no meaning in a"),
+    (["settings", "raduis"], "did you mean radius?"),
     (["render", "standard", "--camera", "eye=1,2"], "camera eye"),
     (["render", "standard", "--output", "none/a.png"], "there is no folder 'none'"),
     (["render", "standard", "--rays", "none.npz", "--hits", "a.npz"], "none.npz: cannot be read"),
@@ -129,7 +138,8 @@ def test_without_a_display_the_window_says_so(capsys, monkeypatch):
 def test_version_and_help(capsys):
     assert main(["--version"]) == 0
     assert f"jaart {jaart.__version__}" in capsys.readouterr().out
-    for arguments in (["-h"], ["--help"], ["render", "-h"], ["trace", "--help"], ["info", "-h"], ["gui", "-h"]):
+    for arguments in (["-h"], ["--help"], ["render", "-h"], ["trace", "--help"], ["info", "-h"], ["gui", "-h"],
+                      ["statistics", "-h"], ["settings", "-h"]):
         assert main(arguments) == 0
         assert "Usage: jaart" in capsys.readouterr().out
 
@@ -148,7 +158,7 @@ def test_info_says_what_a_scene_holds(capsys):
     record = json.loads(capsys.readouterr().out)
     assert record["kind"] == "model"
     assert record["size"] == [16, 16, 16]
-    surfels = prepare.surfels(jaart.load("standard"), jaart.Settings())
+    surfels = prepare.surfels(jaart.load("standard"), jaart.preset("best"))
     assert (record["surfels"], record["without_normal"]) == (len(surfels), surfels.without_normal)
     assert record["interface_cells"] == record["surfels"] + record["without_normal"] > 400
     assert {s["shape"] for s in record["solids"]} == {"Sphere", "Box"}
@@ -182,7 +192,8 @@ def test_hits_hold_every_array_and_no_picture_is_written_beside_them():
     assert [p.name for p in Path().iterdir()] == ["h.npz"]
     hits = np.load("h.npz")
     assert set(hits) == {"origin", "direction", "hit", "t", "point", "normal", "status", "status_names", "off_centre",
-                         "energy", "iterations", "evaluations", "neighbours", "cells", "prep_s", "ray_s"}
+                         "energy", "iterations", "evaluations", "neighbours", "cells", "lowered", "shading_normal",
+                         "prep_s", "ray_s"}
     assert hits["hit"].dtype == bool and hits["status"].dtype == np.uint8
     assert tuple(hits["status_names"]) == STATUS_NAMES
     assert hits["point"].shape == (1200, 3) and hits["prep_s"].shape == hits["ray_s"].shape == ()
@@ -246,7 +257,8 @@ def test_a_trace_is_the_picture_s_ray_and_its_json_is_complete(capsys):
         assert sum(step["weights"]) == pytest.approx(1)
         assert all(len(step[name]) == 3 for name in ("cell", "query", "barycentre", "normal", "next"))
     assert len({len(v) for v in record["curves"].values()}) == 1
-    assert record["settings"]["h"] == "0.8"
+    assert record["settings"]["h"] == "auto" and record["balls"] == []
+    assert set(record["curves"]) == {"t", "tangent", "off_centre", "mahalanobis", "angle"}
 
 
 def test_a_ray_that_misses_has_null_for_its_hit():
@@ -266,6 +278,9 @@ def test_a_trace_as_table_and_as_plots():
     for row, step in zip(rows, steps, strict=True):
         assert [float(row[f"query_{a}"]) for a in "xyz"] == step["query"]
         assert (float(row["energy"]), row["outcome"]) == (step["energy"], step["outcome"])
+        assert [int(row[f"cell_{a}"]) for a in "ijk"] == step["cell"]
+        off = np.subtract(step["barycentre"], step["query"])
+        assert float(row["angle"]) == step["angle"] == pytest.approx(abs(off @ step["normal"]) / np.linalg.norm(off))
     for name in ("a.svg", "b.svg"):
         assert main(["trace", "standard", *ray, "--output", name]) == 0
     assert Path("a.svg").read_bytes() == Path("b.svg").read_bytes()
@@ -277,6 +292,54 @@ def test_preview_names_a_picture_and_plots(capsys):
     named = {line.removeprefix("wrote ") for line in capsys.readouterr().out.splitlines()}
     assert named == {str(p) for p in Path("out").iterdir()}
     assert {Path(name).suffix for name in named} == {".png", ".svg"}
+
+
+def test_statistics_as_table_and_as_plots(capsys):
+    assert main(["render", "standard", *SMALL, "--hits", "h.npz"]) == 0
+    hits = np.load("h.npz")
+    for name in ("s.csv", "s.svg"):
+        assert main(["statistics", "standard", *SMALL, "--output", name]) == 0
+    assert "against the exact surface" in capsys.readouterr().out
+    rows = list(csv.DictReader(io.StringIO(Path("s.csv").read_text())))
+    numbers = {(row["statistic"], row["bin"]): float(row["value"]) for row in rows}
+    assert numbers["rays", ""] == 1200 and numbers["hits", ""] == hits["hit"].sum()
+    assert numbers["end state", "converged"] == (hits["status"] == STATUS_NAMES.index("converged")).sum()
+    assert sum(int(b) * v for (name, b), v in numbers.items() if name == "cells") == hits["cells"].sum()
+    assert 0 < numbers["delta", ""] < 1
+    assert "<svg" in Path("s.svg").read_text()
+
+
+# Settings
+
+def test_settings_lists_every_name_with_its_help_and_every_preset(capsys):
+    assert main(["settings"]) == 0
+    listed = capsys.readouterr().out
+    words = " ".join(listed.split())
+    for name, about in PARAMETERS.items():
+        assert f"\n  {name:<15} default " in listed
+        assert all(part in words for part in (about.help, about.source, about.group))
+    assert max(len(line) for line in listed.splitlines()) <= 100
+    for name, values in PRESETS.items():
+        assert f"  {name}" in listed and all(f"{k}=" in words for k in values)
+
+
+@pytest.mark.parametrize(("name", "said", "not_said"), [
+    ("radius", "> 0 and <= 1e+06 or auto, in cells or cloud units", "placement"), ("Cloud", "orient", "radius"),
+    ("raster", "for a model only", "h  "), ("thesis", "max_iterations=20 filling=corners", "default")])
+def test_settings_says_what_one_name_stands_for(capsys, name, said, not_said):
+    assert main(["settings", name]) == 0
+    text = capsys.readouterr().out
+    assert said in " ".join(text.split()) and not_said not in text
+
+
+def test_a_preset_s_values_without_meaning_are_left_out_with_a_note(capsys):
+    angle = ["--preset", "thesis", "--set", "method=angle"]
+    assert main(["render", "splash", *SMALL, *angle, "--hits", "a.npz"]) == 0
+    assert capsys.readouterr().err.splitlines()[-1] == (
+        "jaart: note: left out of the preset, without a meaning here: search = iterate, filling = corners")
+    assert main(["render", "standard", *SMALL, "--preset", "adamson-alexa", "--hits", "b.npz"]) == 0
+    assert "in shares of a cloud: h = 0.004d" in capsys.readouterr().err
+    assert np.load("b.npz")["hit"].any()
 
 
 # Interruption

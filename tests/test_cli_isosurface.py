@@ -43,8 +43,8 @@ def test_a_mesh_is_made_and_written(capsys, arguments):
 
 
 def test_the_command_makes_what_python_makes(capsys):
-    assert main([*COMMAND, "tangent", "--level", "0.2", "-o", "a.obj"]) == 0
-    mesh = jaart.isosurface(jaart.load("standard"), jaart.Settings(), "tangent", 0.2)
+    assert main([*COMMAND, "tangent", "--level", "0.2", "--preset", "thesis", "-o", "a.obj"]) == 0
+    mesh = jaart.isosurface(jaart.load("standard"), jaart.preset("thesis"), "tangent", 0.2)
     assert capsys.readouterr().out.startswith(f"{len(mesh.vertices)} vertices, {len(mesh)} triangles")
 
 
@@ -65,7 +65,7 @@ def test_the_direction_may_be_the_cameras(capsys):
     (("tangent", "--camera", "fov=3", "-o", "a.ply"), 2, "has no meaning without --energy tangent_step"),
     (("tangent", "--set", "energy=angle", "-o", "a.ply"), 2, "energy is what --energy says"),
     (("tangent", "--set", "tolerance=1", "-o", "a.ply"), 1, "tolerance has no meaning"),
-    (("fill_level", "--subdivide", "3", "-o", "a.ply"), 1, "subdivide has no meaning"),
+    (("fill_level", "--subdivide", "3", "-o", "a.ply"), 2, "has no meaning with --energy fill_level"),
     (("fill_level", "--set", "h=1", "-o", "a.ply"), 1, "h has no meaning"),
     (("tangent", "--level", "x", "-o", "a.ply"), 1, "level = 'x': expected"),
     (("tangent", "--level", "40", "-o", "a.ply"), 1, "no surface there"),

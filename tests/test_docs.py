@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 import jaart
+from jaart.core.camera import Camera
+from jaart.core.suited import suited
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = ["README.md", "CHANGELOG.md", "resources/README.md", *(f"docs/{p.name}" for p in (ROOT / "docs").glob("*.md"))]
@@ -38,7 +40,8 @@ def test_the_model_in_the_readme_is_the_standard_one(tmp_path: Path) -> None:
 
 def test_the_rays_of_the_tour_end_as_it_says() -> None:
     scene = jaart.load("splash")
-    hits = jaart.render(scene)
-    names = [jaart.trace(scene, hits.settings, hits.origin[y * 512 + x], hits.direction[y * 512 + x]).outcome[-1]
-             for x, y in ((161, 245), (181, 320))]
-    assert names == ["cap", "converged"]
+    rays = Camera.fit(scene).rays((512, 512))
+    for name, (x, y), outcome in (("thesis", (161, 245), "cap"), ("best", (181, 320), "converged")):
+        settings, _ = suited(scene, jaart.preset(name))
+        origin, direction = (parts[y * 512 + x] for parts in rays)
+        assert jaart.trace(scene, settings, origin, direction).outcome[-1] == outcome

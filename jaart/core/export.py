@@ -38,7 +38,8 @@ def save_picture(picture: NDArray[np.uint8], path: Target) -> None:
 
 def hits_arrays(hits: Hits) -> dict[str, Any]:
     """Everything of the hits by name: one row a ray, then the names of the end states, prep_s, ray_s and the text
-    shading_normal, which says what `normal` holds."""
+    shading_normal, which says what `normal` holds.
+    """
     return {**{name: getattr(hits, name) for name in _PER_RAY}, "status_names": np.array(STATUS_NAMES),
             "prep_s": hits.prep_s, "ray_s": hits.ray_s, "shading_normal": hits.settings.shading_normal}
 

@@ -23,6 +23,8 @@ ENERGIES = {"tangent": r.TANGENT, "tangent_step": r.TANGENT_STEP, "off_centre": 
             "mahalanobis": r.MAHALANOBIS, "angle": r.ANGLE}
 #: The energy that a ray's direction enters.
 DIRECTED = "tangent_step"
+Progress = Callable[[int, int], None]
+
 #: Half the width of a central difference, in h.
 WIDTH = 1e-5
 #: A thread takes the gradients at so many points at a time.
@@ -54,11 +56,13 @@ class Energy:
         return scratch(int(np.diff(self.cells.sites.first).max(initial=0)))
 
 
-def energy_field(energy: Energy, divisions: int, threads: int | None = None, cancel: Event | None = None) -> Array:
+def energy_field(energy: Energy, divisions: int, threads: int | None = None, cancel: Event | None = None,
+                 progress: Progress | None = None) -> Array:
     """The energy (nx·divisions + 1, …) at the points (i, j, k)/divisions of a lattice; NaN where no surfel is near.
 
-    threads: as many as the machine has when None. On a face the cell on the low side gives the neighbourhood. Raises
-    SettingsError when the field would not fit into memory, Cancelled after cancel was set.
+    threads: as many as the machine has when None; progress(done, all layers of cells) is called from the caller's
+    thread. On a face the cell on the low side gives the neighbourhood. Raises SettingsError when the field would not
+    fit into memory, Cancelled after cancel was set.
     """
     sites, plan = energy.cells.sites, energy.asked
     shape = tuple(n * divisions + 1 for n in sites.shape)
@@ -68,7 +72,7 @@ def energy_field(energy: Energy, divisions: int, threads: int | None = None, can
     def layer(number: int) -> None:
         field.sample_layer(sites, plan, energy.direction, divisions, number, values, *energy.scratch())
 
-    _all(layer, range(sites.shape[0]), threads, cancel)
+    _all(layer, range(sites.shape[0]), threads, cancel, progress)
     return values
 
 
@@ -89,15 +93,17 @@ def energy_gradients(energy: Energy, points: Array, threads: int | None = None, 
     return result
 
 
-def _all(work: Callable[[int], None], numbers: range, threads: int | None, cancel: Event | None) -> None:
+def _all(work: Callable[[int], None], numbers: range, threads: int | None, cancel: Event | None,
+         progress: Progress | None = None) -> None:
     """Do the work of every number in a pool of threads. Raises Cancelled after cancel was set."""
     def one(number: int) -> None:
         if cancel is None or not cancel.is_set():
             work(number)
 
     with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
-        for _ in pool.map(one, numbers):
-            pass
+        for done, _ in enumerate(pool.map(one, numbers), 1):
+            if progress is not None:
+                progress(done, len(numbers))
     if cancel is not None and cancel.is_set():
         raise Cancelled("the field of the energy was cancelled")
 

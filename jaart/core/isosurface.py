@@ -13,7 +13,7 @@ from jaart.core.assemble import plan_of
 from jaart.core.contour import Mesh
 from jaart.core.errors import RayError, SettingsError
 from jaart.core.extents import edges
-from jaart.core.field import DIRECTED, ENERGIES, Energy
+from jaart.core.field import DIRECTED, ENERGIES, Energy, Progress
 from jaart.core.groups.surface import MESHES
 from jaart.core.kernels.records import Vector
 from jaart.core.meshes import energy_mesh, level_mesh
@@ -28,14 +28,14 @@ NAMES = (*ENERGIES, "fill_level")
 
 def isosurface(scene: Scene, settings: Settings | None = None, energy: str | None = None,
                level: float | str | None = None, subdivide: int | None = None, *, direction: ArrayLike | None = None,
-               threads: int | None = None, cancel: Event | None = None) -> Mesh:
+               threads: int | None = None, cancel: Event | None = None, progress: Progress | None = None) -> Mesh:
     """The mesh of a lattice's surface, as `render` meets it with method = isosurface or fill_level.
 
     energy: a name of NAMES; level: as the energy, or "auto"; subdivide: samples along an edge of a cell; each in place
     of the settings' when given; direction: (3,) of a ray, for tangent_step alone, whose |e_ts| [T 2.20] it enters;
-    threads: as many as the machine has when None. Energies have a sheet on each side of the points. Raises
-    SettingsError for what makes no sense or has no surface, RayError for a direction that is none, Cancelled after
-    cancel was set.
+    threads: as many as the machine has when None; progress(done, all) is called from the caller's thread. Energies
+    have a sheet on each side of the points. Raises SettingsError for what makes no sense or has no surface, RayError
+    for a direction that is none, Cancelled after cancel was set.
     """
     asked = asked_settings(settings or Settings(), energy, level, subdivide)
     name = energy or asked.energy
@@ -45,7 +45,7 @@ def isosurface(scene: Scene, settings: Settings | None = None, energy: str | Non
         return level_mesh(prepare.levels(scene, asked), asked, values.level, edges(scene))
     made = Energy(prepare.cells(scene, asked, values, cancel), plan_of(scene, asked, values), name,
                   asked.emphasise, along)
-    return energy_mesh(made, asked.subdivide, values.level, threads, cancel)
+    return energy_mesh(made, asked.subdivide, values.level, threads, cancel, progress)
 
 
 def asked_settings(settings: Settings, energy: str | None = None, level: float | str | None = None,

@@ -93,9 +93,14 @@ def find(name: str) -> Map:
 
 
 def unit(name: str, kind: str) -> str:
-    """The unit of a map in a kind of scene (see KINDS): lengths count in cells of a lattice, in units of a cloud."""
+    """The unit of a map in a kind of scene (see KINDS): lengths count in cells of a lattice, in units of a cloud.
+
+    Errors of a cloud count in its mean spacing.
+    """
     about = find(name)
-    return "units" if kind == "cloud" and about.unit == "cells" else about.unit
+    if kind != "cloud" or about.unit != "cells":
+        return about.unit
+    return "spacings" if name.endswith("_error") else "units"
 
 
 def scale(name: str, hits: Hits, quality: Quality | None = None) -> tuple[float, float]:

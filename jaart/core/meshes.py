@@ -9,7 +9,7 @@ import numpy as np
 
 from jaart.core.contour import Mesh, contour
 from jaart.core.errors import SettingsError
-from jaart.core.field import Energy, energy_field, energy_gradients
+from jaart.core.field import Energy, Progress, energy_field, energy_gradients
 from jaart.core.filters import filtered
 from jaart.core.kernels.records import Vector
 from jaart.core.scene import Array, frozen
@@ -17,14 +17,15 @@ from jaart.core.settings import Settings
 
 
 def energy_mesh(energy: Energy, divisions: int, level: float, threads: int | None = None,
-                cancel: Event | None = None) -> Mesh:
+                cancel: Event | None = None, progress: Progress | None = None) -> Mesh:
     """The shell around all points whose energy is below a level [T §2.4.6].
 
     It has a sheet on each side of the points, and is open where no more surfels are near. divisions: samples along an
-    edge of a cell; level: as the energy. The normals are the energy's own gradient. Raises SettingsError where the
-    energy has no such level or would not fit into memory, Cancelled after cancel was set.
+    edge of a cell; level: as the energy; progress: as of `energy_field`. The normals are the energy's own gradient.
+    Raises SettingsError where the energy has no such level or would not fit into memory, Cancelled after cancel was
+    set.
     """
-    values, step = energy_field(energy, divisions, threads, cancel), 1.0 / divisions
+    values, step = energy_field(energy, divisions, threads, cancel, progress), 1.0 / divisions
     between = _between(values[np.isfinite(values)])
     mesh = _some(contour(values, level, step=(step, step, step)), level, energy.name, between)
     gradient = energy_gradients(energy, mesh.vertices, threads, cancel)

@@ -83,13 +83,13 @@ class Parameter:
         words = {"flag": "true or false", "vector": "x,y,z", "vectors": "x,y,z or several of them apart by ;", "integer": "a whole number",
                  "number": "a finite number", "choice": "",
                  "length": "a finite number, or one with d (diagonals) or s (spacings)"}[self.kind]
-        parts = [w for w in (words, " or ".join(self.choices)) if w]
         bounds = []
         if self.low > -math.inf:
             bounds.append(f"{'>' if self.open_low else '>='} {self.low:g}")
         if self.high < math.inf:
             bounds.append(f"<= {self.high:g}")
-        return " or ".join(parts) + ("" if not bounds else " " + " and ".join(bounds))
+        number = " ".join(w for w in (words, " and ".join(bounds)) if w)
+        return " or ".join(w for w in (number, *self.choices) if w)
 
     def matters(self, settings: Any) -> bool:
         """Whether the parameter has a meaning beside the others."""

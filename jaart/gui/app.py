@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from jaart.core.camera import Camera
 from jaart.core.errors import JaartError
-from jaart.core.settings import Settings
+from jaart.core.settings import PRESETS, Settings, preset
 from jaart.gui.libraries import check
 
 if TYPE_CHECKING:
@@ -28,7 +28,8 @@ def run(source: str | PathLike[str] | None = None, settings: Settings | None = N
         frame: int | None = None) -> int:
     """Open the window and return the exit status when it closes.
 
-    source: a file or a built-in name, the sample when None; pick: pixel (x, y) of the picture;
+    source: a file or a built-in name, the sample when None; settings: those of the first preset when None;
+    pick: pixel (x, y) of the picture;
     screenshot: save the window there once everything is drawn, and end. Raises JaartError without a
     display or a system library, for a scene that cannot be read, and, with screenshot, for any failure.
     """
@@ -47,7 +48,7 @@ def run(source: str | PathLike[str] | None = None, settings: Settings | None = N
     app = QApplication.instance() or QApplication(["jaart"])
     app.setApplicationName("Jaart")
     window, loop = MainWindow(), QEventLoop()
-    window.model.set_settings(settings or Settings())
+    window.model.set_settings(settings or preset(next(iter(PRESETS))))
     window.closed.connect(loop.quit)
     window.loader.finished.connect(garbage.set_aside)
     problems: list[str] = []

@@ -11,7 +11,7 @@ from jaart.plot.energy import draw_energy
 
 
 class EnergyPlot(FigurePanel):
-    """e_ts, e_oc and e_M along the picked ray."""
+    """e_ts, e_oc, e_M and e_angle along the picked ray."""
 
     message = "Click a pixel in the picture to see the energies along its ray."
 
@@ -21,7 +21,7 @@ class EnergyPlot(FigurePanel):
         self.whole.setText("whole ray")
         self.whole.setCheckable(True)
         self.whole.hide()
-        self.whole.setToolTip("Show the energies from the first cell to the last.\n"
+        self.whole.setToolTip("Show the energies from the first cell or ball to the last.\n"
                               "Wheel: zoom. Drag: move. Double click: back.")
         self.whole.toggled.connect(self.new_view)
         model.trace_changed.connect(self.new_trace)
@@ -30,11 +30,13 @@ class EnergyPlot(FigurePanel):
     def draw(self) -> None:
         """Draw the picked ray's energies."""
         trace = self.model.trace
-        self.whole.setVisible(trace is not None and bool(len(trace.cells)))
+        self.whole.setVisible(trace is not None and bool(len(trace.cells) or len(trace.balls)))
         if trace is None:
             self.canvas.say(self.message)
             return
-        self.draw_anew(lambda axes: draw_energy(axes, trace, self.model.step, self.model.theme, self.whole.isChecked()))
+        known = self.model.known
+        self.draw_anew(lambda axes: draw_energy(axes, trace, self.model.step, self.model.theme, self.whole.isChecked(),
+                                                None if known is None else known.values.level))
         self.whole.raise_()
         self._place()
 

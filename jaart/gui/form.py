@@ -9,10 +9,13 @@ from qtpy.QtWidgets import QCheckBox, QComboBox, QWidget
 
 from jaart.core.parameter import Parameter
 from jaart.gui.number_row import NumberRow, WordRow
-from jaart.gui.row import CONTROL_WIDTH, Row, column
+from jaart.gui.row import Row, column
 from jaart.gui.vector_rows import VectorRow, VectorsRow
 
 __all__ = ["ChoiceRow", "FlagRow", "NumberRow", "Row", "VectorRow", "VectorsRow", "WordRow", "column", "make_row"]
+
+#: Width of a list of names, which may say what "auto" stands for [pixels].
+LIST_WIDTH = 128
 
 
 class ChoiceRow(Row):
@@ -23,7 +26,8 @@ class ChoiceRow(Row):
         self.combo = QComboBox()
         for name in about.choices:
             self.combo.addItem(name, name)
-        self.combo.setMinimumWidth(CONTROL_WIDTH)
+        self.combo.setFixedWidth(LIST_WIDTH)
+        self.combo.view().setMinimumWidth(LIST_WIDTH + 40)
         self.combo.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.combo.wheelEvent = lambda event: event.ignore()  # type: ignore[method-assign]
         self.combo.activated.connect(lambda _: self.enter(self.combo.currentData()))

@@ -8,6 +8,7 @@ from qtpy.QtWidgets import QApplication, QWidget
 
 from jaart.core.camera import Camera
 from jaart.core.picture import plain
+from jaart.core.quality import known
 from jaart.core.shade import shade
 from jaart.gui import navigation, overlay, theme
 from jaart.gui.model import SceneModel
@@ -61,7 +62,7 @@ class ImageView(QWidget):
 
     def _was_exact(self) -> bool:
         """Whether errors are on show that the next full picture will bring anew."""
-        exact = self.model.scene is not None and self.model.scene.model is not None
+        exact = self.model.scene is not None and known(self.model.scene)
         return exact and not self.image.isNull() and not self.model.idle
 
     def picture_area(self) -> QRectF:

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from qtpy.QtCore import QObject, QTimer, Signal
+from qtpy.QtCore import QObject, Signal
 
 from jaart.core.camera import Camera
 from jaart.core.records import Hits, Quality, Trace
 from jaart.core.scene import Scene
 from jaart.core.settings import PRESETS, Settings, preset
-from jaart.gui import navigation, tasks
+from jaart.gui import navigation, results, tasks
 from jaart.gui.navigation import Bounds
+from jaart.gui.preparing import Preparing
 from jaart.gui.shader import Shader
 from jaart.gui.suit import refused_name, suited
 from jaart.gui.tasks import Known, Made, Opened
@@ -25,9 +24,6 @@ if TYPE_CHECKING:
 
 #: While the camera is dragged, pictures are made smaller until one takes about this long [s].
 DRAG_SECONDS = 0.03
-
-#: When a job has shown nothing for so long, it is told what it does [ms].
-PATIENCE_MS = 500
 
 #: Size of a picture in pixels when nobody says.
 PICTURE = (512, 512)
@@ -60,10 +56,10 @@ class SceneModel(QObject):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.scene: Scene | None = None
-        self.settings = Settings()
         self.camera: Camera | None = None
         self.bounds: Bounds = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
         self.preset = next(iter(PRESETS))
+        self.settings = preset(self.preset)
         self.known: Known | None = None
         self.fault: tuple[str, str] | None = None
         self.size = PICTURE
@@ -76,8 +72,7 @@ class SceneModel(QObject):
         self.theme = "light"
         self._worker, self._painter = Worker(self), Worker(self)
         self.shader = Shader(self)
-        self._slow = QTimer(self, singleShot=True, interval=PATIENCE_MS)
-        self._slow.timeout.connect(self._say_preparing)
+        self._slow = Preparing(self)
         self._painter.failed.connect(self.failed)
         for worker in (self._worker, self.shader.worker):
             worker.progressed.connect(self.progressed)
@@ -144,7 +139,7 @@ class SceneModel(QObject):
         refused = self.fault is not None
         self._set_fault(None)
         if self.hits is not None:
-            self.hits = _with_settings(self.hits, settings)
+            self.hits = results.with_settings(self.hits, settings)
         self.settings_changed.emit()
         if self.scene is not None and (refused or settings.key("rays") != old.key("rays")):
             self._keep_view()
@@ -166,7 +161,7 @@ class SceneModel(QObject):
             return
         old, self.size = self.size, (width, height)
         if self.picked is not None:
-            self.picked = (self.picked[0] * width // old[0], self.picked[1] * height // old[1])
+            self.picked = results.moved(self.picked, old, self.size)
             self.picked_changed.emit()
         self._render()
 
@@ -249,15 +244,10 @@ class SceneModel(QObject):
         if self.scene is None or self.camera is None:
             return
         scene, settings, camera = self.scene, self.settings, self.camera
-        size = self._drag_size() if dragging else self.size
+        size = results.smaller(self.hits, self.size, DRAG_SECONDS) if dragging else self.size
         self._slow.start()
         self._worker.submit("picture", lambda job: tasks.picture(job, scene, settings, camera, size, dragging),
                             self._made, lambda hits: self._show(hits, None), brief=dragging)
-
-    def _drag_size(self) -> tuple[int, int]:
-        seconds = 0.0 if self.hits is None else self.hits.ray_s / len(self.hits) * self.size[0] * self.size[1]
-        factor = next((f for f in (1, 2, 4) if seconds / f**2 <= DRAG_SECONDS), 8)
-        return -(-self.size[0] // factor), -(-self.size[1] // factor)
 
     def _made(self, made: Made) -> None:
         if made.known != self.known:
@@ -271,7 +261,7 @@ class SceneModel(QObject):
 
     def _show(self, hits: Hits, quality: Quality | None) -> None:
         self._slow.stop()
-        self.hits, self.quality = _with_settings(hits, self.settings), quality
+        self.hits, self.quality = results.with_settings(hits, self.settings), quality
         self.hits_changed.emit()
         if self.complete:
             self.progressed.emit(1.0)
@@ -287,15 +277,8 @@ class SceneModel(QObject):
     def _traced(self, trace: Trace) -> None:
         same = self.trace is not None and self.trace.pixel == trace.pixel
         self.trace = trace
-        self.step = min(self.step, max(trace.steps - 1, 0)) if same else first_of_last_start(trace)
+        self.step = min(self.step, max(trace.steps - 1, 0)) if same else results.first_of_last_start(trace)
         self.trace_changed.emit()
-
-    def _say_preparing(self) -> None:
-        """A picture is late: its points are prepared, or a kernel is compiled that was never used before."""
-        if not self._worker.idle and self.scene is not None:
-            points = self.scene.points
-            what = "the scene" if points is None else f"{len(points):,} points"
-            self.said.emit(f"Preparing {what} …")
 
     def _refuse(self, message: str) -> None:
         """The core refused the settings: keep what is shown, mark the setting, and say why once."""
@@ -314,15 +297,3 @@ class SceneModel(QObject):
         if not self.computing:
             self._slow.stop()
             self.settled.emit()
-
-
-def first_of_last_start(trace: Trace) -> int:
-    """The first step of the start that ended the ray, 0 without steps."""
-    return int(np.argmax(trace.start == trace.start[-1])) if trace.steps else 0
-
-
-def _with_settings(hits: Hits, settings: Settings) -> Hits:
-    """The same hits with other shading, when only that differs."""
-    if hits.settings == settings or hits.settings.key("rays") != settings.key("rays"):
-        return hits
-    return replace(hits, settings=settings)

@@ -91,6 +91,7 @@ class NumberRow(WordRow):
         shown = self.number()
         self.box.set_text("" if shown is None else text_of(shown))
         self._show_word(value)
+        self.slider.setVisible(shown is not None)
         if shown is not None:
             at = (plain(shown) / self._scale(shown) - self.low) / self.about.step
             with QSignalBlocker(self.slider):

@@ -115,7 +115,8 @@ def numbers(hits: Hits, quality: Quality | None, x: int, y: int, kind: str = "la
     if hits.evaluations[at]:
         rows += [("Iterations", f"{hits.iterations[at]} of {hits.evaluations[at]} in all")]
     if quality is not None and math.isfinite(quality.distance[at]):
-        rows += [("Error", f"{quality.distance[at]:.4f} cells, {quality.angle[at]:.2f}°")]
+        apart = unit("distance_error", kind)
+        rows += [("Error", f"{fixed(quality.distance[at])} {apart}, {quality.angle[at]:.2f}°")]
     return rows
 
 

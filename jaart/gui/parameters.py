@@ -78,10 +78,11 @@ class Parameters(QScrollArea):
 
     def refresh(self) -> None:
         """Show the model's settings; rows without a meaning beside the others or in the scene are hidden."""
-        settings, kind = self.model.settings, self.model.kind
+        settings, kind, base = self.model.settings, self.model.kind, preset(self.model.preset)
         name_at_fault, why = self.model.fault or ("", "")
         for name, row in self.rows.items():
             value = getattr(settings, name)
+            row.set_base(getattr(base, name))
             self._tell_scene(row)
             if value != row.value:
                 row.show_value(value)

@@ -1,4 +1,4 @@
-"""What the rows of a form have in common: a label, a way back to the default, and room for an error message."""
+"""What the rows of a form have in common: a label, a way back to the preset's value, and room for an error message."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ CONTROL_WIDTH = 96
 
 
 class Row(QWidget):
-    """One parameter: label, control, button back to the default, and a message when a value is refused."""
+    """One parameter: label, control, button back to the preset's value, and a message when a value is refused."""
 
     entered = Signal(str, object)
 
     def __init__(self, about: Parameter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.about, self.value = about, about.default
-        self.label = QLabel()
-        self.reset = QToolButton(text="↺", objectName="reset", toolTip=f"Back to {text_of(about.default)}")
-        self.reset.clicked.connect(lambda: self.enter(about.default))
+        self.about, self.value, self.base = about, about.default, about.default
+        self.label = QLabel(wordWrap=True)
+        self.label.setMinimumWidth(60)
+        self.reset = QToolButton(text="↺", objectName="reset", toolTip=f"Back to {text_of(self.base)}")
+        self.reset.clicked.connect(lambda: self.enter(self.base))
         self.fault = QLabel(objectName="fault", wordWrap=True, visible=False)
         self.grid = QGridLayout(self)
         self.grid.setContentsMargins(8, 2, 2, 2)
@@ -46,6 +47,12 @@ class Row(QWidget):
         self.label.setText(f"{self.about.label} [{unit}]" if unit else self.about.label)
         self.setToolTip(tip(self.about, unit))
 
+    def set_base(self, value: Any) -> None:
+        """Set the value that the button goes back to: the chosen preset's."""
+        self.base = value
+        self.reset.setToolTip(f"Back to {text_of(value)}")
+        self.reset.setVisible(self.value != value)
+
     def enter(self, value: Any) -> None:
         """Check a value and pass it on, or say what is wrong with it and leave everything as it is."""
         try:
@@ -59,7 +66,7 @@ class Row(QWidget):
     def show_value(self, value: Any) -> None:
         """Show a value without telling anyone."""
         self.value = value
-        self.reset.setVisible(value != self.about.default)
+        self.reset.setVisible(value != self.base)
         self.refuse("")
         self.display(value)
 

@@ -65,5 +65,10 @@ def figures(model: SceneModel) -> list[str]:
     texts = [f"{100 * hits.hit.mean():.1f} % of rays hit", f"{hits.evaluations.mean():.2f} evaluations/ray",
              f"{1000 * hits.ray_s:.0f} ms"]
     if quality is not None:
-        texts.append(f"δ {quality.delta:.4f}   δp {quality.delta_p:.4f}   δn {quality.delta_n:.4f}")
+        texts.append(f"δ {_short(quality.delta)}   δp {_short(quality.delta_p)}   δn {_short(quality.delta_n)}")
     return texts
+
+
+def _short(error: float) -> str:
+    """An error to four places, or to three digits where it is small."""
+    return f"{error:.4f}" if not 0 < error < 0.01 else f"{error:.3g}"

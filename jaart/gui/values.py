@@ -91,8 +91,9 @@ def unit_in(about: Parameter, kind: str) -> str:
 
 def tip(about: Parameter, unit: str) -> str:
     """What a parameter means, its unit, where it comes from and what may be typed."""
-    lines = [escape(about.help), f"Unit: {unit}." if unit else "", f"<i>{escape(about.source)}</i>" if about.source else "",
-             f"Takes {escape(about.expected)}.", f"<code>--set {about.name}={escape(text_of(about.default))}</code>"]
+    source = f"<i>{escape(about.source)}</i>" if about.source else ""
+    lines = [escape(about.help), f"Unit: {unit}." if unit else "", source, f"Takes {escape(about.expected)}.",
+             f"<code>--set {about.name}={escape(text_of(about.default))}</code>"]
     return "<qt>" + "<br>".join(line for line in lines if line) + "</qt>"
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.records import Trace
-from jaart.plot import style
+from jaart.plot import scale, searched, style
 from jaart.plot.style import THEMES, Spot, Theme
 
 if TYPE_CHECKING:
@@ -17,80 +17,116 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-#: Height of the strip of cells, as a share of the axes.
+#: Height of the strip of cells or balls, as a share of the axes.
 _STRIP = 0.055
+#: Balls overlap, so they are drawn in so many rows.
+_ROWS = 3
 
-#: The longest part of a ray (cells) that is shown unasked.
+#: The longest part of a ray (cells or radii of balls) that is shown unasked.
 _LONG = 8.0
 
 
-def energy_figure(trace: Trace, step: int = 0, theme: str = "light", size: tuple[float, float] = (6.4, 3.6)) -> Figure:
+def energy_figure(trace: Trace, step: int = 0, theme: str = "light", size: tuple[float, float] = (6.4, 3.6),
+                  level: float | None = None) -> Figure:
     """The energies along a ray, with the chosen step marked.
 
-    size: inches.
+    size: inches; level: below which a minimum counts, that of the settings when None.
     """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=size, layout="constrained")
     style.blank(figure, THEMES[theme])
-    draw_energy(figure.add_subplot(), trace, step, theme)
+    draw_energy(figure.add_subplot(), trace, step, theme, level=level)
     return figure
 
 
-def draw_energy(axes: Axes, trace: Trace, step: int = 0, theme: str = "light", whole: bool = False) -> list[Spot]:
+def draw_energy(axes: Axes, trace: Trace, step: int = 0, theme: str = "light", whole: bool = False,
+                level: float | None = None) -> list[Spot]:
     """Draw the energies into an axes; returns the places that answer the mouse.
 
-    whole: show the whole ray instead of its part near the steps.
+    whole: show the whole ray instead of its part near the steps; level: below which a minimum counts, that of the
+    settings when None.
     """
-    colours = THEMES[theme]
-    style.dress(axes, colours, "t along the ray [cells]", "energy [cells]")
-    if not len(trace.cells):
+    colours, unit = THEMES[theme], scale.unit(trace)
+    style.dress(axes, colours, f"t along the ray [{unit}]", f"energy [{unit}]")
+    if not len(scale.stretches(trace)):
         style.say(axes, colours, "This ray passes the scene.")
         return []
     axes.set_xlim(*_span(trace, step, whole))
     axes.set_ylim(*_range(trace, axes.get_xlim()))
-    _cells(axes, trace, colours)
+    (_balls if scale.is_cloud(trace) else _cells)(axes, trace, colours)
+    axes.axhline(0, color=colours.muted, linewidth=0.8, zorder=1)
     _curves(axes, trace, colours)
+    _level(axes, trace, level, colours)
     style.title(axes, colours, _title(trace, step), raised=True)
-    style.legend(axes, colours, loc="lower left", bbox_to_anchor=(0, 1), ncols=3)
+    style.legend(axes, colours, loc="lower left", bbox_to_anchor=(0, 1), ncols=5)
     return _steps(axes, trace, step, colours)
 
 
 def _title(trace: Trace, step: int) -> str:
     if not trace.steps:
-        return f"{style.OUTCOMES[trace.status].capitalize()}: no cell with a surfel on this ray"
-    return f"Step {step + 1}: e_ts = {trace.energy[step]:+.4f} cells at t = {trace.t_query[step]:.3f}"
+        return f"{style.OUTCOMES[trace.status].capitalize()}: " + scale.no_steps(trace).replace("\n", " ")
+    return f"Step {step + 1}: {_value(trace, step)} at t = {scale.text(trace, trace.t_query[step], 3)}"
+
+
+def _value(trace: Trace, step: int) -> str:
+    """The energy that is searched at a step, in words."""
+    name, value = searched.energy_name(trace), searched.at_steps(trace)[step]
+    if name in ("tangent", "off_centre"):
+        sign = "+" if name == "tangent" else ""
+        return f"{searched.SIGNS[name]} = {scale.step_text(trace, value, 4, sign)} {scale.unit(trace)}"
+    return f"{searched.SIGNS[name]} = {value:.4g}"
 
 
 def _span(trace: Trace, step: int, whole: bool) -> tuple[float, float]:
     """Around all starts; around the chosen one where they lie too far apart to be told from each other."""
     if whole or not trace.steps:
-        low, high = trace.borders[0], trace.borders[-1]
+        ways = scale.stretches(trace)
+        low, high = float(ways.min()), float(ways.max())
         return low - 0.02 * (high - low), high + 0.02 * (high - low)
     low, high = _ends(trace, np.ones(trace.steps, dtype=bool))
-    if high - low > _LONG:
+    size = scale.size(trace)
+    if high - low > _LONG * size:
         low, high = _ends(trace, trace.start == trace.start[step])
-    margin = max(0.75, 0.5 * (4.0 - (high - low)))
+    margin = max(0.75 * size, 0.5 * (4.0 * size - (high - low)))
     return low - margin, high + margin
 
 
 def _ends(trace: Trace, steps: NDArray[np.bool_]) -> tuple[float, float]:
-    ends = np.concatenate([trace.t_query[steps], trace.t_next[steps & (np.abs(trace.energy) < 3.0)]])
+    led = steps & (np.abs(trace.energy) < 3.0 * scale.size(trace)) & ~np.array(searched.looks(trace))
+    ends = np.concatenate([trace.t_query[steps], trace.t_next[led]])
     if trace.hit and steps[-1]:
         ends = np.append(ends, trace.t)
     return float(ends.min()), float(ends.max())
 
 
 def _range(trace: Trace, span: tuple[float, float]) -> tuple[float, float]:
-    inside = (trace.curves.t >= span[0]) & (trace.curves.t <= span[1])
-    values = np.concatenate([trace.curves.tangent[inside], trace.curves.off_centre[inside],
-                             trace.curves.mahalanobis[inside]])
+    inside, size = (trace.curves.t >= span[0]) & (trace.curves.t <= span[1]), scale.size(trace)
+    values = np.concatenate([curve[inside] for curve, *_ in _drawn(trace)])
     values = values[np.isfinite(values)]
     asked = trace.energy[np.isfinite(trace.energy) & (trace.t_query >= span[0]) & (trace.t_query <= span[1])]
-    low = max(min(values.min(initial=0.0), asked.min(initial=0.0)), -1.0)
-    high = max(min(values.max(initial=0.0), 1.2), min(asked.max(initial=0.0), 2.0), 0.5)
+    low = max(min(values.min(initial=0.0), asked.min(initial=0.0)), -1.0 * size)
+    high = max(min(values.max(initial=0.0), 1.2 * size), min(asked.max(initial=0.0), 2.0 * size), 0.5 * size)
     low = min(low, -0.3 * high)
     return low - 0.15 * (high - low), high + 0.17 * (high - low)
+
+
+def _drawn(trace: Trace) -> list[tuple[Array, str, str]]:
+    """The curves as they are drawn, their names in the legend, and what they are called in searched.SIGNS.
+
+    e_M and e_angle are no lengths: in a cloud they are drawn in the scale of its balls.
+    """
+    curves, size = trace.curves, scale.size(trace)
+    square, one = ("$e_M$ [cells²]", r"$e_{\angle}$") if not scale.is_cloud(trace) else (
+        f"$e_M$ / {size:.2g}", rf"$e_{{\angle}}$ · {size:.2g}")
+    return [(_without_poles(curves.tangent, size), "$e_{ts}$", "tangent"),
+            (curves.off_centre, "$e_{oc}$", "off_centre"),
+            (curves.mahalanobis / size, square, "mahalanobis"), (curves.angle * size, one, "angle")]
+
+
+def _in_scale(trace: Trace, name: str, values: Array | float) -> Array | float:
+    """Values of an energy as they are drawn."""
+    return values * {"mahalanobis": 1 / scale.size(trace), "angle": scale.size(trace)}.get(name, 1.0)
 
 
 def _cells(axes: Axes, trace: Trace, colours: Theme) -> None:
@@ -109,23 +145,49 @@ def _cells(axes: Axes, trace: Trace, colours: Theme) -> None:
             with rc_context({"hatch.linewidth": 1.7 if full else 0.4}):
                 axes.broken_barh(chosen.tolist(), (0, _STRIP), transform=across, zorder=2, hatch=hatch, edgecolor=edge,
                                  facecolor=colours.face, linewidth=1.8 if full else 0.4)
-    axes.axhline(0, color=colours.muted, linewidth=0.8, zorder=1)
+
+
+def _balls(axes: Axes, trace: Trace, colours: Theme) -> None:
+    """The balls' stretches of the ray, in rows; the ground is tinted where any is."""
+    ways, across = scale.stretches(trace), axes.get_xaxis_transform()
+    parts = np.stack([ways[:, 0], ways[:, 1] - ways[:, 0]], axis=1)
+    axes.broken_barh(parts.tolist(), (0, 1), transform=across, facecolor=colours.band, zorder=0)
+    for row in range(_ROWS):
+        axes.broken_barh(parts[row::_ROWS].tolist(), (row * _STRIP / _ROWS, _STRIP / _ROWS), transform=across, zorder=2,
+                         facecolor=colours.cell, edgecolor=colours.full_cell, linewidth=0.8)
 
 
 def _curves(axes: Axes, trace: Trace, colours: Theme) -> None:
     t = trace.curves.t
-    axes.plot(t, _without_poles(trace.curves.tangent), color=colours.ray, linewidth=1.5, label="$e_{ts}$", zorder=4)
-    axes.plot(t, trace.curves.off_centre, color=colours.barycentre, linewidth=1.2, dashes=(4, 1.5),
-              label="$e_{oc}$", zorder=3)
-    axes.plot(t, trace.curves.mahalanobis, color=colours.surfel, linewidth=1.2, dashes=(1, 1),
-              label="$e_M$ [cells²]", zorder=3)
+    apart = np.diff(t) > 3 * np.median(np.diff(t)) if len(t) > 1 else np.zeros(0, bool)
+    gaps = np.flatnonzero(apart) + 1  # between balls that do not touch, nothing is known
+    looks: dict[str, dict[str, Any]] = {
+        "tangent": {"color": colours.ray, "linewidth": 1.5, "zorder": 4},
+        "off_centre": {"color": colours.barycentre, "linewidth": 1.2, "dashes": (4, 1.5), "zorder": 3},
+        "mahalanobis": {"color": colours.surfel, "linewidth": 1.2, "dashes": (1, 1), "zorder": 3},
+        "angle": {"color": colours.plane, "linewidth": 1.2, "dashes": (5, 1.5, 1, 1.5), "zorder": 3}}
+    for values, label, name in _drawn(trace):
+        axes.plot(np.insert(t, gaps, np.nan), np.insert(values, gaps, np.nan), label=label, **looks[name])
 
 
-def _without_poles(values: Array) -> Array:
+def _level(axes: Axes, trace: Trace, level: float | None, colours: Theme) -> None:
+    """The line below which a minimum is a hit, where the search minimises."""
+    if level is None and not isinstance(trace.settings.level, str):
+        level = trace.settings.level
+    if level is None or not searched.minimises(trace):
+        return
+    name = searched.energy_name(trace)
+    at = _in_scale(trace, name, level)
+    for sign in (1, -1) if name == "tangent" and not trace.settings.emphasise else (1,):
+        axes.axhline(sign * at, color=colours.hit, linewidth=1.0, dashes=(6, 2), zorder=2.5,
+                     label="level" if sign == 1 else None)
+
+
+def _without_poles(values: Array, size: float) -> Array:
     """The values without the stroke from one side of a pole to the other."""
     values = values.copy()
     with np.errstate(invalid="ignore"):
-        pole = (values[1:] * values[:-1] < 0) & (np.minimum(np.abs(values[1:]), np.abs(values[:-1])) > 1.0)
+        pole = (values[1:] * values[:-1] < 0) & (np.minimum(np.abs(values[1:]), np.abs(values[:-1])) > size)
     values[1:][pole] = np.nan
     return values
 
@@ -133,13 +195,15 @@ def _without_poles(values: Array) -> Array:
 def _steps(axes: Axes, trace: Trace, step: int, colours: Theme) -> list[Spot]:
     """All steps, those of other starts faint, the chosen one on top; a few artists in all, for speed."""
     low, high = axes.get_ylim()
-    shown = np.clip(trace.energy, low + _STRIP * (high - low), high)
+    shown = np.clip(_in_scale(trace, searched.energy_name(trace), searched.at_steps(trace)),
+                    low + _STRIP * (high - low), high)
     number = np.arange(trace.steps)
     same = trace.start == trace.start[step] if trace.steps else np.zeros(0, bool)
-    for chosen, alpha, scale in ((~same, 0.3, 0.7), (same & (number != step), 0.8, 0.7), (number == step, 1.0, 1.0)):
-        if chosen.any():
+    for chosen, alpha, smaller in ((~same, 0.3, 0.7), (same & (number != step), 0.8, 0.7), (number == step, 1.0, 1.0)):
+        if chosen.any() and not searched.looks(trace):
             _stairs(axes, trace, np.flatnonzero(chosen), shown, colours, alpha)
-            _marks(axes, trace, chosen, shown, colours, alpha, scale)
+        if chosen.any():
+            _marks(axes, trace, chosen, shown, colours, alpha, smaller)
     spots = [spot for i in number for spot in _spots(trace, int(i), shown[i])]
     left, right = axes.get_xlim()
     style.label(axes, [(s.x, s.y, s.text[:s.text.index(":")], colours.query if s.text[0] == "Q" else colours.next)
@@ -147,7 +211,7 @@ def _steps(axes: Axes, trace: Trace, step: int, colours: Theme) -> list[Spot]:
                        if left <= s.x <= right and same[s.step]])
     if trace.hit:
         axes.plot(trace.t, 0, zorder=8, **style.marker("hit", colours))
-        spots.append(Spot(trace.t, 0.0, f"hit: t = {trace.t:.4f}"))
+        spots.append(Spot(trace.t, 0.0, f"hit: t = {scale.text(trace, trace.t)}"))
     return spots
 
 
@@ -165,18 +229,22 @@ def _stairs(axes: Axes, trace: Trace, steps: NDArray[np.intp], shown: Array, col
 
 
 def _marks(axes: Axes, trace: Trace, chosen: NDArray[np.bool_], shown: Array, colours: Theme, alpha: float,
-           scale: float) -> None:
-    size = scale * style.MARK
-    axes.plot(trace.t_next[chosen], np.zeros(chosen.sum()), zorder=6 + scale, alpha=alpha,
-              **style.marker("next", colours, size))
-    axes.plot(trace.t_query[chosen], np.nan_to_num(shown[chosen]), zorder=6 + scale, alpha=alpha,
+           smaller: float) -> None:
+    size = smaller * style.MARK
+    if not searched.looks(trace):
+        axes.plot(trace.t_next[chosen], np.zeros(chosen.sum()), zorder=6 + smaller, alpha=alpha,
+                  **style.marker("next", colours, size))
+    axes.plot(trace.t_query[chosen], np.nan_to_num(shown[chosen]), zorder=6 + smaller, alpha=alpha,
               **style.marker("query", colours, size))
 
 
 def _spots(trace: Trace, i: int, shown: float) -> list[Spot]:
-    t, t_next, energy = trace.t_query[i], trace.t_next[i], trace.energy[i]
-    if not np.isfinite(energy):
-        return [Spot(t, 0.0, f"Q{i + 1}: t = {t:.4f}, {style.OUTCOMES[trace.outcome[i]]}", i)]
-    beyond = "" if shown == energy else " (beyond the plot)"
-    return [Spot(t_next, 0.0, f"H{i + 1}: t = {t_next:.4f}", i),
-            Spot(t, float(shown), f"Q{i + 1}: t = {t:.4f}, e_ts = {energy:+.4f} cells{beyond}", i)]
+    t, t_next, value = trace.t_query[i], trace.t_next[i], searched.at_steps(trace)[i]
+    where = f"Q{i + 1}: t = {scale.text(trace, t)}"
+    if not np.isfinite(value):
+        return [Spot(t, 0.0, f"{where}, {style.OUTCOMES[trace.outcome[i]]}", i)]
+    beyond = "" if shown == _in_scale(trace, searched.energy_name(trace), value) else " (beyond the plot)"
+    query = Spot(t, float(shown), f"{where}, {_value(trace, i)}{beyond}", i)
+    if searched.looks(trace):
+        return [query]
+    return [Spot(t_next, 0.0, f"H{i + 1}: t = {scale.text(trace, t_next)}", i), query]

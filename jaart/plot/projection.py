@@ -121,7 +121,8 @@ def _surfels(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -
     axes.scatter(points[:, 0], points[:, 1], s=3 + 75 * share, color=colours.surfel, alpha=alpha, linewidth=0,
                  zorder=2.1)
     heights, of = flat.heights(trace.surfels.points[near]), scale.unit(trace)
-    return [Spot(x, y, f"surfel {i}: weight {w:.3f}, {scale.text(trace, abs(z), 2)} {of} {'before' if z > 0 else 'behind'} the plane")
+    return [Spot(x, y, f"surfel {i}: weight {w:.3f}, {scale.text(trace, abs(z), 2)} {of} "
+                       f"{'before' if z > 0 else 'behind'} the plane")
             for i, (x, y), w, z in zip(near, points, weights, heights, strict=True)]
 
 

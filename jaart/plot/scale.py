@@ -32,8 +32,15 @@ def size(trace: Trace) -> float:
 
 
 def text(trace: Trace, length: float, places: int = 4, sign: str = "") -> str:
-    """A length with so many places in a lattice, and with as many digits below the balls' size in a cloud."""
-    return f"{length:{sign}.{places + max(0, -math.floor(math.log10(size(trace))))}f}"
+    """A length with so many places in a lattice; in a cloud with nearly as many digits below the balls' size."""
+    if is_cloud(trace):
+        places = max(0, places - 1 - math.floor(math.log10(size(trace))))
+    return f"{length:{sign}.{places}f}"
+
+
+def step_text(trace: Trace, length: float, places: int = 4, sign: str = "") -> str:
+    """The length of a step: as `text`, but with digits that count however short it is in a cloud."""
+    return f"{length:{sign}.3g}" if is_cloud(trace) else text(trace, length, places, sign)
 
 
 def stretches(trace: Trace) -> Array:

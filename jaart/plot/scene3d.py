@@ -93,9 +93,9 @@ def _balls(trace: Trace, step: int, colours: Theme) -> dict[str, Mesh]:
     """Balls that hold the query, or the next point, as three circles each; the query's stand out."""
     centres, radii = trace.balls[:, :3], trace.balls[:, 3]
     holds, leads = (np.linalg.norm(centres - x, axis=1) <= radii for x in (trace.query[step], trace.next_point[step]))
+    parts = (("cells", leads & ~holds, colours.cell), ("full_cells", holds, colours.full_cell))
     return {name: copies(glyphs.rings(48), centres[chosen], np.tile([0.0, 0.0, 1.0], (int(chosen.sum()), 1)),
-                         radii[chosen], rgb(colour))
-            for name, chosen, colour in (("cells", leads & ~holds, colours.cell), ("full_cells", holds, colours.full_cell))}
+                         radii[chosen], rgb(colour)) for name, chosen, colour in parts}
 
 
 def _ray(trace: Trace, low: float, high: float, colours: Theme) -> list[Mesh]:

@@ -56,7 +56,7 @@ def draw_statistics(figure: Figure, statistics: Statistics, theme: str = "light"
     width, height = figure.get_size_inches()
     steps, cells, ends = (figure.add_axes(box) for box in _boxes(width, height, len(notes)))
     _steps(steps, statistics, colours)
-    _histogram(cells, statistics.cells, colours, "Cells a ray", "cells visited", colours.full_cell)
+    _histogram(cells, statistics.cells, colours, "Cells or balls a ray", "visited", colours.full_cell)
     _ends(ends, statistics, colours, notes)
 
 
@@ -131,10 +131,16 @@ def _notes(statistics: Statistics) -> list[str]:
              f"prepared in {1000 * statistics.prep_s:.0f} ms, rays in {1000 * statistics.ray_s:.0f} ms"]
     q = statistics.quality
     if q is not None:
-        notes += [f"δ = {q.delta:.4f}   δ_p = {q.delta_p:.4f} cells   δ_n = {q.delta_n:.4f}",
+        notes += ["   ".join(f"{name} = {_error(value)}" for name, value in
+                             (("δ", q.delta), ("δ_p", q.delta_p), ("δ_n", q.delta_n))),
                   f"false hits {_number(q.false_hit)}, misses {_number(q.false_miss)}, "
                   f"far {_number(q.distance_miss)} of {_number(q.relevant)}"]
     return notes
+
+
+def _error(error: float) -> str:
+    """A measured error to four places, or to three digits where it is small."""
+    return f"{error:.4f}" if not 0 < error < 0.01 else f"{error:.3g}"
 
 
 def _share(count: int, rays: int) -> str:

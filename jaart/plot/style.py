@@ -113,6 +113,9 @@ def legend(axes: Axes, theme: Theme, **where: Any) -> None:
 def place(figure: Figure, left: float = 0.55, right: float = 0.1, bottom: float = 0.42, top: float = 0.42) -> None:
     """Margins of a figure's only axes in inches: a fixed layout, drawn in half the time of a computed one."""
     width, height = figure.get_size_inches()
+    for axis in (axes.yaxis for axes in figure.axes):
+        texts = axis.get_major_formatter().format_ticks(axis.get_majorticklocs())
+        left = max(left, 0.24 + 0.065 * max(map(len, texts), default=0))
     figure.subplots_adjust(left / width, min(bottom / height, 0.45), 1 - right / width, 1 - min(top / height, 0.45))
 
 
@@ -153,7 +156,8 @@ def step_title(trace: Trace, step: int) -> tuple[str, str]:
     """The two title lines of a step: which one and how it ended; its numbers."""
     starts = f" · start {trace.start[step] + 1} of {trace.start[-1] + 1}" if trace.start[-1] else ""
     first = f"Step {step + 1} of {trace.steps}{starts}: {OUTCOMES[trace.outcome[step]]}"
-    moved, off = scale.text(trace, trace.energy[step], 3, "+"), scale.text(trace, trace.off_centre[step], 3)
+    moved, off = (scale.step_text(trace, trace.energy[step], 3, "+"),
+                  scale.step_text(trace, trace.off_centre[step], 3))
     second = (f"step {moved}   off-centre {off} {scale.unit(trace)}   "
               f"Σθ {trace.weight_sum[step]:.3g} of {len(trace.neighbours[step])} surfels")
     return first, second

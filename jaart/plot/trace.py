@@ -18,10 +18,12 @@ if TYPE_CHECKING:
 _ROW = 4
 
 
-def trace_figure(trace: Trace, step: int | None = None, theme: str = "light", up: Up = (0.0, 0.0, 1.0)) -> Figure:
+def trace_figure(trace: Trace, step: int | None = None, theme: str = "light", up: Up = (0.0, 0.0, 1.0),
+                 level: float | None = None) -> Figure:
     """Steps of one start in a row, and the energies below.
 
-    step: one that must be among them, the last of the ray when None; up: the camera's.
+    step: one that must be among them, the last of the ray when None; up: the camera's; level: below which a minimum
+    counts, that of the settings when None.
     """
     from matplotlib.figure import Figure
 
@@ -35,7 +37,7 @@ def trace_figure(trace: Trace, step: int | None = None, theme: str = "light", up
         draw_projection(axes, trace, i, theme, up)
         if column:
             axes.set_ylabel("")
-    draw_energy(figure.add_subplot(grid[-1, :]), trace, max(step, 0), theme)
+    draw_energy(figure.add_subplot(grid[-1, :]), trace, max(step, 0), theme, level=level)
     _legend(figure, theme)
     return figure
 

@@ -18,6 +18,7 @@ from jaart.core.settings import Settings
 from jaart.core.warm import warm_up
 
 SHAPE = (11, 12, 10)
+BASE = Settings(h=0.8, radius=2.0)
 
 
 def ball(radius: float = 3.4) -> Scene:
@@ -28,14 +29,14 @@ def ball(radius: float = 3.4) -> Scene:
 
 
 def energy_of(scene: Scene, name: str, settings: Settings | None = None, **more) -> Energy:
-    settings = settings or Settings()
+    settings = settings or BASE
     values = warm_up(scene, settings)
     return Energy(prepare.cells(scene, settings, values), assemble.plan_of(scene, settings, values), name, **more)
 
 
 def expected(scene: Scene, name: str, x: np.ndarray, cell: tuple[int, ...], d: np.ndarray) -> float:
     """The energy from its definition, with the surfels within 2 cells of the cell's centre [T 2.15–2.23]."""
-    found = prepare.surfels(scene, Settings())
+    found = prepare.surfels(scene, BASE)
     near = np.linalg.norm(found.points - (np.array(cell) + 0.5), axis=1) <= 2.0
     p, n = found.points[near], found.normal[near]
     if not len(p):
@@ -74,7 +75,10 @@ def test_an_emphasised_field_follows_its_formula():
 
 def test_the_field_has_the_same_bits_whatever_the_threads():
     scene = ball()
-    one, four = (energy_field(energy_of(scene, "tangent"), 2, threads=n) for n in (1, 4))
+    told: list[tuple[int, int]] = []
+    one = energy_field(energy_of(scene, "tangent"), 2, threads=1, progress=lambda *done: told.append(done))
+    four = energy_field(energy_of(scene, "tangent"), 2, threads=4)
+    assert told == [(i + 1, SHAPE[0]) for i in range(SHAPE[0])]
     assert np.array_equal(one, four, equal_nan=True)
 
 

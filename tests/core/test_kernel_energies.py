@@ -92,7 +92,8 @@ def test_slopes_in_closed_form_are_those_of_50_digits(kind: int, c: float, weigh
         v = value_of(NEAR, x, rule)
         e = plain_energy(kind, NEAR, place(x), DIRECTION, v, c, w)
         found = energy_slope(kind, NEAR, place(x), DIRECTION, rule, v, e, w)
-        assert found == pytest.approx(exact_slope(kind, weight, x, DIRECTION, POINTS, AHEAD, H, c), rel=1e-11, abs=1e-12)
+        exact = exact_slope(kind, weight, x, DIRECTION, POINTS, AHEAD, H, c)
+        assert found == pytest.approx(exact, rel=1e-11, abs=1e-12)
 
 
 def test_slopes_far_away_are_right() -> None:

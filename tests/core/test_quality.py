@@ -10,9 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from jaart.core import prepare
+from jaart.core import cloud, prepare
 from jaart.core.quality import against, angles, quality
 from jaart.core.records import STATUS, Hits, Quality
+from jaart.core.samples import bumpy_sphere
 from jaart.core.scene import Model, Scene
 from jaart.core.settings import Settings
 from jaart.core.shapes import Sphere, first_hit
@@ -147,3 +148,19 @@ def test_bad_rays_are_left_out() -> None:
     q = quality(hits, scene)
     assert q is not None
     assert (q.relevant, q.false_miss, q.delta) == (1, 0, 0)
+
+
+def test_a_cloud_is_measured_in_its_spacings() -> None:
+    scene = bumpy_sphere(2000)
+    rng = np.random.default_rng(5)
+    direction = rng.normal(size=(300, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    origin = rng.uniform(-1.2, 1.2, (300, 3)) - 5 * direction
+    assert scene.exact is not None
+    t, normal = scene.exact.hit(origin, direction)
+    assert 50 < np.isfinite(t).sum() < 300
+    exact = quality(make_hits(list(t), normal, origin, direction), scene)
+    assert exact is not None and (exact.delta, exact.relevant) == (0, np.isfinite(t).sum())
+    moved = quality(make_hits(list(t + 0.25 * cloud.spacing(scene)), normal, origin, direction), scene)
+    assert moved is not None and moved.delta_p == pytest.approx(0.25)
+    assert quality(make_hits(list(t), normal, origin, direction), Scene("x", points=scene.points)) is None

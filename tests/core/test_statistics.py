@@ -22,7 +22,7 @@ def hits():
         origin=nothing, direction=nothing, t=nothing[:, 0], point=nothing, normal=nothing, energy=nothing[:, 0],
         off_centre=nothing[:, 0], iterations=np.array([2, 2, 4, 7, 0, 0], np.int32),
         evaluations=np.array([2, 5, 4, 23, 0, 0], np.int32), neighbours=np.array([20, 50, 40, 230, 0, 0], np.int32),
-        cells=np.array([1, 3, 3, 9, 2, 0], np.int32), lowered=np.zeros(6, np.int32),
+        cells=np.array([1, 3, 3, 9, 2, 0], np.int32), lowered=np.array([0, 2, 0, 1, 0, 0], np.int32),
         status=np.array([STATUS[n] for n in names], np.uint8),
         settings=Settings(), prep_s=0.5, ray_s=0.25)
 
@@ -36,7 +36,7 @@ def test_counts_and_means(hits):
     assert s.iterations.mean == pytest.approx(8 / 3)
     assert (s.evaluations.rays, s.evaluations.mean) == (4, 8.5)
     assert (s.cells.rays, s.cells.mean) == (5, 3.6)
-    assert s.neighbours == 10
+    assert (s.neighbours, s.lowered) == (10, 3)
     assert s.quality is None
 
 
@@ -69,7 +69,8 @@ def test_the_table_holds_every_number(hits):
     rows = table(statistics(hits, Quality(0.1, 0.2, 0.3, 4, 1, 2, 3, nothing, nothing)))
     assert rows[0] == ("statistic", "bin", "value")
     assert {len(row) for row in rows} == {3}
-    for row in (("rays", "", 6), ("hits", "", 3), ("end state", "left_trust", 1), ("iterations", "2", 2),
+    for row in (("rays", "", 6), ("hits", "", 3), ("evaluations of a lower degree", "", 3),
+                ("end state", "left_trust", 1), ("iterations", "2", 2),
                 ("evaluations", "23", 1), ("cells", "3", 2), ("delta_p", "", 0.2), ("false_miss", "", 2)):
         assert row in rows
     assert sum(value for name, _, value in rows if name == "end state") == 6

@@ -74,14 +74,15 @@ def iterate(surfels: Surfels, origin: np.ndarray, direction: np.ndarray, t: floa
 
 
 def curves(surfels: Surfels, origin: np.ndarray, direction: np.ndarray, low: float, high: float) -> Curves:
-    """The three energies along the ray."""
+    """The four energies along the ray."""
     t = np.linspace(low, high, 400)
-    values = np.full((3, len(t)), np.nan)
+    values = np.full((4, len(t)), np.nan)
     for k, at in enumerate(t):
         here = local(surfels, origin + at * direction)
         if here is not None:
             tangent = (here["normal"] @ here["off"]) / (here["normal"] @ direction)
-            values[:, k] = tangent, np.linalg.norm(here["off"]), here["mahalanobis"]
+            values[:, k] = tangent, np.linalg.norm(here["off"]), here["mahalanobis"], (
+                abs(here["off"] @ here["normal"]) / np.linalg.norm(here["off"]))
     return Curves(t, *values)
 
 
@@ -120,4 +121,5 @@ def _record(steps, surfels, origin, direction, cells, borders, with_surfel, rast
         outcome=tuple(s["outcome"] for s in steps), neighbours=tuple(s["near"] for s in steps),
         weights=tuple(s["share"] for s in steps), cells=cells, borders=borders, with_surfel=with_surfel,
         surfels=surfels, curves=curves(surfels, origin, direction, borders[0], borders[-1]) if len(cells)
-        else Curves(*np.empty((4, 0))), settings=Settings(), extent=(float(raster),) * 3)
+        else Curves(*np.empty((5, 0))), settings=Settings(), balls=np.empty((0, 4)), low=np.zeros(3),
+        high=np.full(3, float(raster)))

@@ -48,6 +48,11 @@ CACHE = _user_cache() / f"kernels-{_sources_hash()}"
 _CACHED = _usable(CACHE)
 
 
+def kept() -> bool:
+    """Whether compiled kernels can be kept for the next process."""
+    return _CACHED
+
+
 def first_time() -> bool:
     """Whether the kernels are still to be compiled."""
     return not (_CACHED and any(CACHE.rglob("*.nbi")))

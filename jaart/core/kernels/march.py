@@ -9,7 +9,8 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.probe import F, look, opposite
 from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, Start, Vector
-from jaart.core.kernels.stretch import fewer, hit_at, nothing_found, state_of
+from jaart.core.kernels.stretch import fewer, hit_at, jumps, nothing_found, state_of
+from jaart.core.kernels.vectors import dot
 
 
 @kernel(STRICT)
@@ -18,27 +19,32 @@ def march_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vecto
     """The first change of sign of f within a stretch; arguments as of `step_search`.
 
     The steps begin anew with every stretch and are shortened to divide it. Where f jumps over 0 at its beginning,
-    because other surfels count there, the hit is on the border.
+    because other surfels count there, the hit is on the border. Where the normal changes its side f jumps over 0,
+    and has no root.
     """
     size = int(surfels_near(sites, start.cell).size)
     if size == 0:
         return nothing_found(r.BACKGROUND, 0, 0, 0, 0, nan)
     count = max(int(ceil((start.high - start.low) / how.step)), 1)
     state, looks, refused, lowered, s_before, f_before = r.BACKGROUND, 0, 0, 0, start.low, start.before
+    n_before = (nan, nan, nan)
     for i in range(count + 1):
         s = start.low + (start.high - start.low) * (i / count)
         seen = look(F, sites, rule, how, d, start, s, rows, row + looks, work, fit)
         looks, lowered = looks + 1, lowered + fewer(seen, rule)
         if seen.value.state != r.CONTINUE:
             state = state_of(seen.value, state)
-        elif opposite(f_before, seen.f):
-            at = s if s == s_before else s_before + (s - s_before) * (f_before / (f_before - seen.f))
+        elif jumps(f_before, seen.f, rule.h) if i == 0 else opposite(f_before, seen.f):
+            at = s if i == 0 else s_before + (s - s_before) * (f_before / (f_before - seen.f))
             hit = look(F, sites, rule, how, d, start, at, rows, row + looks, work, fit)
             looks, lowered = looks + 1, lowered + fewer(hit, rule)
+            if dot(n_before, seen.value.n) < 0.0 and abs(hit.f) > min(abs(f_before), abs(seen.f)):
+                s_before, f_before, n_before = s, seen.f, seen.value.n
+                continue
             end = hit_at(r.CONVERGED, sites, rule, how, bounds, d, start, at, hit.value, hit.f, looks, looks + refused,
                          (looks + refused) * size, lowered, work, fit)
             if end.state == r.CONVERGED:
                 return end
             state, refused = end.state, end.evaluations - looks  # what finding that out took
-        s_before, f_before = s, seen.f
+        s_before, f_before, n_before = s, seen.f, seen.value.n
     return nothing_found(state, looks, looks + refused, (looks + refused) * size, lowered, f_before)

@@ -14,7 +14,7 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.probe import F_SLOPE, F, Look, look, opposite, root_between
 from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, Start, Vector
-from jaart.core.kernels.stretch import fewer, hit_at, nothing_found, state_of
+from jaart.core.kernels.stretch import fewer, hit_at, jumps, nothing_found, state_of
 
 #: Length of the steps, in h.
 _STEP = 0.8
@@ -42,7 +42,7 @@ def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
     state, looks, evaluations, lowered = r.BACKGROUND, 0, 0, 0
     a = look(F_SLOPE, sites, rule, how, d, start, start.low, rows, row, work, fit)
     looks, evaluations, lowered = 1, a.evaluations, fewer(a, rule)
-    if opposite(start.before, a.f):
+    if jumps(start.before, a.f, rule.h):
         end = hit_at(r.FLOOR, sites, rule, how, bounds, d, start, a.s, a.value, a.f, looks, evaluations,
                      evaluations * size, lowered, work, fit)
         if end.state == r.FLOOR:
@@ -64,6 +64,8 @@ def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
             hit, more, spent = root_between(F, sites, rule, how, d, start, low, high, how.arrived, nan, rows,
                                             row + looks, work, fit)
             looks, evaluations = looks + more, evaluations + spent
+            if hit.q != hit.q:
+                continue
             end = hit_at(r.CONVERGED, sites, rule, how, bounds, d, start, hit.s, hit.value, hit.f, looks, evaluations,
                          evaluations * size, lowered, work, fit)
             if end.state == r.CONVERGED:

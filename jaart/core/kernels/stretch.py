@@ -10,13 +10,21 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.judge import judged
 from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.place import in_scene
-from jaart.core.kernels.probe import Look
+from jaart.core.kernels.probe import Look, opposite
 from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, Start, Value, Vector
 from jaart.core.kernels.shown import difference, fitted_normal, true_normal
 from jaart.core.kernels.vectors import along, length
 from jaart.core.kernels.weigh import weigh
 
 _NOTHING = (nan, nan, nan)
+#: f jumps by less than twice this, in h, where lists of surfels change.
+_JUMP = 0.1
+
+
+@kernel(STRICT)
+def jumps(before: float, after: float, h: float) -> bool:
+    """Whether f jumps over 0 as it may where a stretch begins and other surfels count, not as a turned normal does."""
+    return opposite(before, after) and min(abs(before), abs(after)) <= _JUMP * h
 
 
 @kernel(STRICT)
