@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+
+os.environ["JAART_CALL_KERNELS"] = "1"  # before any kernel is imported: tests call those that are not entries, too
+
 from collections.abc import Callable
 from pathlib import Path
 

@@ -168,6 +168,19 @@ def test_info_says_what_a_scene_holds(capsys):
         assert word in table
 
 
+def test_info_names_each_kind_of_solid_in_full(capsys):
+    place = '<location x="0.5" y="0.5" z="0.5"/>'
+    Path("m.xml").write_text(f"""<SceneGraph raster="12"><Torus major="0.25" minor="0.1" axis="z">{place}</Torus>
+        <Ellipsoid width="0.2" height="0.4" depth="0.2">{place}</Ellipsoid>
+        <Cylinder radius="0.1" height="0.8" axis="x">{place}</Cylinder></SceneGraph>""")
+    assert main(["info", "m.xml"]) == 0
+    solids = [line.split() for line in capsys.readouterr().out.splitlines() if "exact solid" in line]
+    texts = [" ".join(words[2:]) for words in solids]
+    assert texts == ["shape Torus centre (0.5, 0.5, 0.5) axis (0, 0, 1) major 0.25 minor 0.1",
+                     "shape Ellipsoid centre (0.5, 0.5, 0.5) semi_axes (0.1, 0.2, 0.1)",
+                     "shape Cylinder centre (0.5, 0.5, 0.5) axis (1, 0, 0) radius 0.1 height 0.8"]
+
+
 def test_render_writes_a_picture_named_after_the_scene(capsys):
     assert main(["render", "standard", *SMALL]) == 0
     out, err = capsys.readouterr()
@@ -185,6 +198,17 @@ def test_every_map_has_its_own_picture():
         assert main(["render", "standard", *SMALL, "--map", name, "--output", f"{name}.png"]) == 0
         pictures.add(np.asarray(Image.open(f"{name}.png")).tobytes())
     assert len(pictures) == 8
+
+
+@pytest.mark.parametrize(("before", "more"), [
+    ([], ["samples=2"]), ([], ["shading=water"]), (["light=35,23,29"], ["light=35,23,29", "shadows=true"])])
+def test_more_rays_change_the_picture_and_not_the_hits(before, more):
+    for name, values in (("a", before), ("b", more)):
+        set_ = ["--set", *values] if values else []
+        assert main(["render", "standard", *SMALL, *set_, "--output", f"{name}.png", "--hits", f"{name}.npz"]) == 0
+    a, b = (np.asarray(Image.open(name)).astype(int) for name in ("a.png", "b.png"))
+    assert (np.abs(a - b).max(axis=2) > 8).sum() > 10
+    np.testing.assert_array_equal(np.load("a.npz")["t"], np.load("b.npz")["t"])
 
 
 def test_hits_hold_every_array_and_no_picture_is_written_beside_them():

@@ -28,6 +28,14 @@ def test_from_a_scene_to_hits_a_trace_and_errors():
     assert 0 < jaart.quality(hits, scene).delta < 1
 
 
+def test_a_picture_and_a_mesh():
+    scene, settings = jaart.load("standard"), jaart.preset("thesis")
+    hits, colours = jaart.picture(scene, settings, size=(24, 16))
+    assert colours.shape == (16, 24, 3) and len(hits) == 24 * 16
+    mesh = jaart.isosurface(scene, settings, "fill_level")
+    assert len(mesh) > 100 and mesh.vertices.min() >= 0 and mesh.vertices.max() <= 16
+
+
 def test_errors_are_of_one_family():
     assert isinstance(jaart.errors.FileError("a.npz", "is missing"), jaart.errors.JaartError)
     with pytest.raises(jaart.errors.FileError, match=r"nowhere\.npz"):

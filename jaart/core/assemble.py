@@ -7,7 +7,7 @@ from typing import Any
 
 from jaart.core.chosen import Chosen, arrival, finite
 from jaart.core.groups.surface import FITTED
-from jaart.core.kernels import call, centres, fitted, march, minimise, project, safe, stepping, tangent
+from jaart.core.kernels import accept, approach, call, centres, fitted, march, minimise, project, safe, stepping, tangent
 from jaart.core.kernels import records as r
 from jaart.core.kernels.records import Bounds, Plan, Rule, Search
 from jaart.core.meaning import oriented
@@ -26,7 +26,9 @@ def plan_of(scene: Scene, settings: Settings, values: Chosen) -> Plan:
     """All that rays need to know beside the surfels; its kernels are compiled or loaded on first use."""
     rule = rule_of(scene, settings, values)
     evaluate = call.address_of(evaluator(values), call.EVALUATE)
-    how = Search(kind=SEARCHES[values.search], evaluate=evaluate, arrived=arrival(settings, values),
+    meets = call.address_of(approach.approach, call.APPROACH) if rule.degree > 0 else 0
+    how = Search(kind=SEARCHES[values.search], evaluate=evaluate, approach=meets,
+                 accept=call.address_of(accept.accept, call.ACCEPT), arrived=arrival(settings, values),
                  by_value=int(values.method in FITTED), cap=settings.max_iterations, trust=values.trust,
                  growth=int(settings.bail == "growth"), step=values.step,
                  energy=ENERGY_NUMBERS.get(values.method, r.TANGENT_STEP), emphasise=int(settings.emphasise),
@@ -55,7 +57,7 @@ def bounds_of(settings: Settings, values: Chosen) -> Bounds:
     """What a hit must keep [T §2.5]."""
     return Bounds(off_centre=values.off_centre, log_weight=finite(settings.min_weight, -math.inf),
                   nearest=values.nearest, angle=finite(settings.max_angle, math.inf),
-                  gap=finite(settings.min_gap, 0.0))
+                  gap=finite(settings.min_gap, -math.inf))
 
 
 def evaluator(values: Chosen) -> Any:

@@ -31,7 +31,8 @@ class Hits:
     NaN = no hit; energy: length of the last step |e_ts| [T 2.20]; off_centre: |a(x) - x| [T 2.22];
     iterations: steps of the last start; evaluations: steps of all starts; neighbours: surfels summed
     over the evaluations; cells: cells or balls visited (skipped ones are not); lowered: evaluations whose
-    polynomial has fewer degrees than asked for; status: index into STATUS_NAMES.
+    polynomial has fewer degrees than asked for; gap: (λ1 - λ0)/λ2 of a hit where min_gap asks for it, else NaN;
+    status: index into STATUS_NAMES.
     size: (width, height) of a picture, row by row from the top, None for a list of rays.
     prep_s, ray_s: wall seconds of preparation and of all rays.
     """
@@ -48,6 +49,7 @@ class Hits:
     neighbours: Ints
     cells: Ints
     lowered: Ints
+    gap: Array
     status: NDArray[np.uint8]
     settings: Settings
     camera: Camera | None = None

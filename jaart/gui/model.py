@@ -65,11 +65,11 @@ class SceneModel(QObject):
         self.size = PICTURE
         self.hits: Hits | None = None
         self.quality: Quality | None = None
-        self.map = "shaded"
+        self.map, self.theme = "shaded", "light"
+        self._full: tuple[Hits, Quality | None] | None = None
         self.picked: tuple[int, int] | None = None
         self.trace: Trace | None = None
         self.step = 0
-        self.theme = "light"
         self._worker, self._painter = Worker(self), Worker(self)
         self.shader = Shader(self)
         self._slow = Preparing(self)
@@ -81,7 +81,6 @@ class SceneModel(QObject):
             worker.said.connect(self.said)
             worker.ended.connect(self._ended)
         self._worker.said.connect(self._slow.stop)
-        self._notes: tuple[str, ...] = ()
 
     @property
     def idle(self) -> bool:
@@ -212,9 +211,9 @@ class SceneModel(QObject):
         same = self.scene is not None and self.scene.source == scene.source and self.bounds == bounds
         for kind in ("picture", "trace"):
             self._worker.cancel(kind)
-        self.scene, self.bounds, self.known, self._notes = scene, bounds, None, ()
+        self.scene, self.bounds, self.known = scene, bounds, None
         self._set_fault(None)
-        self.hits = self.quality = self.trace = None
+        self.hits = self.quality = self.trace = self._full = None
         self.step = 0
         if not same:
             self.picked = None
@@ -232,9 +231,9 @@ class SceneModel(QObject):
         self._render()
 
     def _keep_view(self) -> None:
-        """Follow a scene whose raster changed, so that it is seen as before."""
-        assert self.scene is not None
-        assert self.camera is not None
+        """Follow a model whose raster changed, so that it is seen as before."""
+        if self.scene is None or self.scene.kind != "model" or self.camera is None:
+            return
         old, self.bounds = self.bounds, tasks.bounds(self.scene, self.settings)
         if old != self.bounds:
             self.camera = navigation.rescaled(self.camera, old, self.bounds)
@@ -253,17 +252,16 @@ class SceneModel(QObject):
         if made.known != self.known:
             self.known = made.known
             self.known_changed.emit()
-        self._show(made.hits, made.quality)
-        if made.notes != self._notes:
-            self._notes = made.notes
-            for note in made.notes:
+            for note in made.known.notes:
                 self.said.emit(note)
+        self._show(made.hits, made.quality)
 
     def _show(self, hits: Hits, quality: Quality | None) -> None:
         self._slow.stop()
         self.hits, self.quality = results.with_settings(hits, self.settings), quality
         self.hits_changed.emit()
         if self.complete:
+            self._full = self.hits, self.quality
             self.progressed.emit(1.0)
             self._trace()
 
@@ -281,10 +279,13 @@ class SceneModel(QObject):
         self.trace_changed.emit()
 
     def _refuse(self, message: str) -> None:
-        """The core refused the settings: keep what is shown, mark the setting, and say why once."""
+        """The core refused the settings: keep the last full picture, mark the setting, and say why once."""
         told = self.fault
         self._slow.stop()
         self._set_fault((refused_name(message), message))
+        if not self.complete and self._full is not None:
+            self.hits, self.quality = self._full
+            self.hits_changed.emit()
         if self.fault != told:
             self.failed.emit(message)
 

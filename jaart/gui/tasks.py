@@ -31,21 +31,24 @@ class Opened:
 
 @dataclass(frozen=True)
 class Known:
-    """What the settings come to in a scene; spacing: the unit "s" of lengths; diagonal: the unit "d"."""
+    """What the settings come to in a scene.
+
+    spacing: the unit "s" of lengths; diagonal: the unit "d"; notes: what a person should know of the points' normals.
+    """
 
     values: Chosen
     spacing: float
     diagonal: float
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Made:
-    """A picture, its errors where the exact surface is known, what its settings came to, and what to say of it."""
+    """A picture, its errors where the exact surface is known, and what its settings came to."""
 
     hits: Hits
     quality: Quality | None
     known: Known
-    notes: tuple[str, ...] = ()
 
 
 def read(source: str | PathLike[str], frame: int | None, settings: Settings, base: Settings,
@@ -73,7 +76,6 @@ def bounds(scene: Scene, settings: Settings) -> Bounds:
 def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int],
             dragging: bool) -> Made:
     """A picture; coarse ones are shown while it is made."""
-    from jaart.core import prepare
     from jaart.core.meaning import check
     from jaart.core.quality import quality
     from jaart.core.render import render
@@ -84,15 +86,15 @@ def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tu
     values = check(scene, settings)
     hits = render(scene, settings, camera, size, progress=None if dragging else job.progress, cancel=job.cancel,
                   picture=None if dragging else job.partial)
-    notes = tuple(getattr(prepare.points(scene, settings, values), "notes", ()))
-    return Made(hits, None if dragging else quality(hits, scene), _known(scene, settings, values), notes)
+    return Made(hits, None if dragging else quality(hits, scene), _known(scene, settings, values))
 
 
 def _known(scene: Scene, settings: Settings, values: Chosen) -> Known:
-    from jaart.core import cloud, extents
+    from jaart.core import cloud, extents, prepare
 
     spacing = cloud.spacing(scene) if scene.kind == "cloud" else 1.0
-    return Known(values, spacing, extents.diagonal(scene, settings))
+    notes = tuple(getattr(prepare.points(scene, settings, values), "notes", ()))
+    return Known(values, spacing, extents.diagonal(scene, settings), notes)
 
 
 def ray(scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int], pixel: tuple[int, int]) -> Trace:

@@ -123,7 +123,7 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
     size = push(keys, items, 0, -2.0, -1) if enter <= leave and leave > 0.0 else 0
     while size > 0 and keys[0] < limit:
         if size > room:
-            return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, 0, ROOM)
+            return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, nan, 0, ROOM)
         size = pop(keys, items, size)
         item = items[size]
         if item < 0:
@@ -131,7 +131,7 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
             continue
         ball = item if item < count else item - count
         if balls.slot[ball] < 0 or balls.slot[ball] >= balls.ready:
-            return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, 0, ball)
+            return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, nan, 0, ball)
         start = start_in(balls, plan, ball, o, d, number)
         if item < count:
             visited += 1
@@ -145,7 +145,7 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
         number += 1
         if one.steps > 0 or one.state != r.BACKGROUND:
             end = added(end, one)
-            end_log(rows, end.rows, one.state)
+            end_log(rows, end.rows if one.steps > 0 else 0, one.state)
         if has_hit(one.state) and (not found or one.t < best.t):
             found, best, limit = True, end, one.t if balls.stretches == 1 else one.t - slack
             if balls.any_hit == 1:
@@ -157,10 +157,10 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
 def finished(best: RayEnd, last: RayEnd, visited: int) -> RayEnd:
     """The best hit with the work that all starts took."""
     return RayEnd(best.state, best.t, best.point, best.n, best.energy, best.off, best.iterations, last.evaluations,
-                  last.used, visited, last.lowered, last.rows, NOTHING)
+                  last.used, visited, last.lowered, best.gap, last.rows, NOTHING)
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array, pixels: Ints, out: Out, rows: Array,
                     missing: Ints, work: Array, fit: Array, keys: Array, items: Ints) -> int:
     """Trace some of the rays and write each that ended into its row of the columns; returns the rows of the log.

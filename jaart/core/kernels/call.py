@@ -27,17 +27,24 @@ _VALUE = types.NamedTuple((types.int64, types.float64, _VECTOR, _VECTOR, types.f
                            types.int64), r.Value)
 _SITES = types.NamedTuple((_CELL, _ROWS, types.Array(types.int64, 1, "C"), types.Array(types.int32, 1, "C"),
                            _FLOATS), r.Sites)
-_SEARCH = types.NamedTuple((types.int64, types.int64, types.float64, types.int64, types.int64, types.float64,
+_SEARCH = types.NamedTuple((types.int64, types.int64, types.int64, types.int64, types.float64, types.int64, types.int64, types.float64,
                             types.int64, types.float64, types.int64, types.int64, types.float64, types.int64), r.Search)
 _BOUNDS = types.NamedUniTuple(types.float64, 5, r.Bounds)
 _START = types.NamedTuple((_CELL, _VECTOR) + (types.float64,) * 5 + (types.int64,), r.Start)
 _END = types.NamedTuple((types.int64, types.float64, _VECTOR, _VECTOR, types.float64, types.float64) +
-                        (types.int64,) * 4 + (types.float64,), r.End)
+                        (types.int64,) * 4 + (types.float64,) * 2, r.End)
+_SPENT = types.NamedUniTuple(types.int64, 4, r.Spent)
+_MET = types.NamedTuple((types.int64, types.float64, _VECTOR, _CELL, _VECTOR, _VALUE, _VECTOR, _CELL, _VECTOR,
+                         types.float64, types.int64, types.int64), r.Met)
 
 #: evaluate(near, x, rule, want, work, fit) -> Value.
 EVALUATE = _VALUE(_NEAR, _VECTOR, _RULE, types.int64, _FLOATS, _FLOATS)
 #: search(sites, rule, how, bounds, direction, start, rows, row, work, fit) -> End.
 SEARCH = _END(_SITES, _RULE, _SEARCH, _BOUNDS, _VECTOR, _START, _ROWS, types.int64, _FLOATS, _FLOATS)
+#: approach(value, direction, slope, reach, rule, fit) -> step.
+APPROACH = types.float64(_VALUE, _VECTOR, types.float64, types.float64, _RULE, _FLOATS)
+#: accept(sites, rule, how, bounds, met, spent, work, fit) -> End.
+ACCEPT = _END(_SITES, _RULE, _SEARCH, _BOUNDS, _MET, _SPENT, _FLOATS, _FLOATS)
 
 _LOCK = Lock()
 
@@ -68,6 +75,20 @@ def search_from(typing_context: Any, address: Any, sites: Any, rule: Any, how: A
                 rows: Any, row: Any, work: Any, fit: Any) -> Any:
     """Run the search that stands at an address from a start on a ray."""
     return SEARCH.return_type(types.int64, *SEARCH.args), _caller(SEARCH)
+
+
+@intrinsic
+def approach_at(typing_context: Any, address: Any, v: Any, d: Any, slope: Any, reach: Any, rule: Any,
+                fit: Any) -> Any:
+    """Step to the fitted surface, by what stands at an address."""
+    return APPROACH.return_type(types.int64, *APPROACH.args), _caller(APPROACH)
+
+
+@intrinsic
+def accept_at(typing_context: Any, address: Any, sites: Any, rule: Any, how: Any, bounds: Any, met: Any, spent: Any,
+              work: Any, fit: Any) -> Any:
+    """Let what stands at an address say what becomes of a hit."""
+    return ACCEPT.return_type(types.int64, *ACCEPT.args), _caller(ACCEPT)
 
 
 @cache

@@ -7,17 +7,17 @@ from typing import Any
 import numpy as np
 
 from jaart.core.kernels import records as r
-from jaart.core.kernels.call import evaluate_at
+from jaart.core.kernels.call import accept_at, evaluate_at
 from jaart.core.kernels.guess import GUESS_WIDTH, meets, write_guess
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.judge import judged
 from jaart.core.kernels.log import write_step
 from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.place import in_scene, located
-from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, Start, Vector
-from jaart.core.kernels.shown import fitted_normal
+from jaart.core.kernels.records import Array, Bounds, End, Met, Rule, Search, Sites, Spent, Start, Vector
 from jaart.core.kernels.stretch import fewer_degrees, nothing_found
-from jaart.core.kernels.vectors import along, length
+from jaart.core.kernels.vectors import along
+
+_ONE: Any = np.int64(1)
 
 
 @kernel(STRICT)
@@ -42,8 +42,6 @@ def centre_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vect
         write_step(rows, row, sites, start, 0.0, start.cell, centre, v, s)
     if s != s or not located(sites, start, d, s)[2]:
         return nothing_found(r.LEFT_TRUST, 1, 1, size, lowered, v.f)
-    state = judged(near, centre, v, bounds, work)
-    if state != r.CONVERGED:
-        return nothing_found(state, 1, 1, size, lowered, v.f)
-    n = fitted_normal(v, x, rule, fit)
-    return End(state, start.t + s, in_scene(sites, start.cell, x), n, v.f, length(v.off), 1, 1, size, lowered, v.f)
+    met = Met(r.CONVERGED, start.t + s, in_scene(sites, start.cell, x), start.cell, centre, v, x, start.cell, x, v.f, 0, 0)
+    spent = Spent(_ONE, _ONE, size, lowered)
+    return accept_at(how.accept, sites, rule, how, bounds, met, spent, work, fit)

@@ -11,7 +11,7 @@ from jaart.core.kernels.records import Array
 Ints = NDArray[np.int64]
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def keep(distance: Array, index: Ints, radii: Array, share: float, kept: NDArray[np.bool_]) -> None:
     """Mark the balls that are kept: one that is kept drops later ones whose core it holds.
 

@@ -86,7 +86,7 @@ def mean_of(near: Near, x: Vector, d: Vector, radius: float) -> Mean:
     return Mean(weight, ahead / weight, scaled((cx, cy, cz), 1.0 / weight), scaled((nx, ny, nz), 1.0 / weight), many)
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def write_shares(sites: Sites, cell: Cell, x: Vector, d: Vector, radius: float, w: Array) -> None:
     """Write the weights, sum 1, of a cell's surfels in the cylinder whose middle is at x."""
     near, total = surfels_near(sites, cell), 0.0
@@ -121,12 +121,12 @@ def hit_of(cells: Cells, cell: Cell, near: Near, t: float, x: Vector, d: Vector,
     size = sqrt(dot(m.n, m.n))
     if not size > _CANCELLED:
         written = log_mean(rows, cells, cell, t, x, m, _NOTHING, r.UNDEFINED_NORMAL)
-        return RayEnd(r.UNDEFINED_NORMAL, nan, _NOTHING, _NOTHING, nan, nan, 1, 1, m.many, 0, 0, written, -1)
+        return RayEnd(r.UNDEFINED_NORMAL, nan, _NOTHING, _NOTHING, nan, nan, 1, 1, m.many, 0, 0, nan, written, -1)
     n, hit = scaled(m.n, 1.0 / size), along(x, d, m.ahead)
     place = in_scene(cells.sites, cell, hit)
     written = log_mean(rows, cells, cell, t, x, m, n, r.CONVERGED)
     off = length((m.centre[0] - hit[0], m.centre[1] - hit[1], m.centre[2] - hit[2]))
-    return RayEnd(r.CONVERGED, t + m.ahead, place, n, m.ahead, off, 1, 1, m.many, 0, 0, written, -1)
+    return RayEnd(r.CONVERGED, t + m.ahead, place, n, m.ahead, off, 1, 1, m.many, 0, 0, nan, written, -1)
 
 
 @kernel(STRICT)
@@ -160,10 +160,10 @@ def cylinder_ray(cells: Cells, radius: float, o: Vector, d: Vector, rows: Array)
         if not t < leave:  # a skipped block may reach past the lattice
             break
     return RayEnd(end.state, end.t, end.point, end.n, end.energy, end.off, end.iterations, end.evaluations, end.used,
-                  visited, end.lowered, end.rows, end.missing)
+                  visited, end.lowered, end.gap, end.rows, end.missing)
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def cylinder_rays(cells: Cells, radius: float, origins: Array, directions: Array, pixels: NDArray[np.int64], out: Out,
                   rows: Array) -> int:
     """Trace some of the rays and write each into its row of the columns; returns the rows of the log it wrote.

@@ -19,7 +19,7 @@ from jaart.core.kernels.vectors import along, dot, length
 from jaart.core.kernels.weigh import weigh
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def sample(sites: Sites, plan: Plan, o: Vector, d: Vector, ts: Array, places: NDArray[np.int64], energies: Array,
            work: Array, fit: Array) -> None:
     """Write e_ts [T 2.20], e_oc [T 2.22], e_M [T 2.18] and e_angle [T 2.23] at each t; NaN where nothing is near.
@@ -44,7 +44,7 @@ def sample(sites: Sites, plan: Plan, o: Vector, d: Vector, ts: Array, places: ND
         energies[2, i] = mahalanobis_sums(near, x, plan.rule.c, work) / s
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def write_weights(sites: Sites, place: Cell, x: Vector, rule: Rule, weights: Array) -> None:
     """Write the weights θ_N of the N surfels near a place at x, sum 1, into weights[:N] [T §2.3.6].
 

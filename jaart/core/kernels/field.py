@@ -44,7 +44,7 @@ def sample_cell(sites: Sites, plan: Plan, d: Vector, divisions: int, cell: Cell,
                 values[i, j, k] = energy_at(near, (x, y, z), plan, d, work, fit)
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def sample_layer(sites: Sites, plan: Plan, d: Vector, divisions: int, layer: int, values: Array, work: Array,
                  fit: Array) -> None:
     """Write the energy at the samples of one layer of cells across x.
@@ -64,7 +64,7 @@ def holder(x: float, cells: int) -> int:
     return min(max(int(ceil(x)) - 1, 0), cells - 1)
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def write_gradients(sites: Sites, plan: Plan, d: Vector, width: float, points: Array, gradients: Array, work: Array,
                     fit: Array) -> None:
     """Write the energy's gradient at points (N, 3) of a lattice, by central differences; NaN where undefined.

@@ -51,7 +51,7 @@ def cell_range(grid: Grid, axis: int, centre: float, radius: float) -> tuple[int
     return min(max(a, 0), grid.shape[axis] - 1), min(max(b, 0), grid.shape[axis] - 1)
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def gather(grid: Grid, centres: Array, radii: Array, first: Ints, ids: NDArray[np.int32], columns: Array,
            write: int) -> None:
     """Count the points within each ball, or copy them into columns.

@@ -31,7 +31,7 @@ def write_guess(row: Array, v: Value, fit: Array) -> None:
         row[FIT + i] = fit[i]
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def fit_centres(sites: Sites, plan: Plan, begin: int, guesses: Array, work: Array, fit: Array) -> None:
     """Evaluate the surface at the centres of the balls begin, begin + 1, ... and keep it in guesses (B, GUESS_WIDTH)."""
     for ball in range(begin, begin + guesses.shape[0]):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, log
+from math import inf, log, nan
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.jit import STRICT, kernel
@@ -20,19 +20,20 @@ def angle_energy(n: Vector, off: Vector) -> float:
 
 
 @kernel(STRICT)
-def judged(near: Near, x: Vector, v: Value, bounds: Bounds, w: Array) -> int:
-    """CONVERGED, or the state that names the first bound that a hit at x breaks.
+def judged(near: Near, x: Vector, v: Value, bounds: Bounds, w: Array) -> tuple[int, float]:
+    """CONVERGED, or the state that names the first bound that a hit at x breaks; and (λ1 - λ0)/λ2 if it is bounded.
 
     w: the weights of the surfels at x.
     """
     if length(v.off) > bounds.off_centre:
-        return r.BOUNDED
+        return r.BOUNDED, nan
     if bounds.log_weight > -inf and v.shift + log(v.weight) < bounds.log_weight:
-        return r.BOUNDED_WEIGHT
+        return r.BOUNDED_WEIGHT, nan
     if bounds.nearest < inf and nearest_distance(near, x) > bounds.nearest:
-        return r.BOUNDED_NEAREST
+        return r.BOUNDED_NEAREST, nan
     if bounds.angle < inf and angle_energy(v.n, v.off) > bounds.angle:
-        return r.BOUNDED_ANGLE
-    if bounds.gap > 0.0 and sampling_gap(near, x, v.weight, v.off, w) < bounds.gap:
-        return r.BOUNDED_GAP
-    return r.CONVERGED
+        return r.BOUNDED_ANGLE, nan
+    if bounds.gap == -inf:
+        return r.CONVERGED, nan
+    gap = sampling_gap(near, x, v.weight, v.off, w)
+    return (r.BOUNDED_GAP if gap < bounds.gap else r.CONVERGED), gap

@@ -6,7 +6,7 @@ share with the same rounding but for its sign, so that a ray that one of them do
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -179,9 +179,9 @@ def trace_ray(faces: Faces, o: Vector, d: Vector, any_hit: int, stack: Ints) -> 
     met, visited = first_meeting(faces, o, d, any_hit, stack)
     end = no_hit(r.BACKGROUND)
     if not met.t < inf:
-        return RayEnd(end.state, end.t, end.point, end.n, end.energy, end.off, 0, 0, 0, visited, 0, 0, -1)
+        return RayEnd(end.state, end.t, end.point, end.n, end.energy, end.off, 0, 0, 0, visited, 0, nan, 0, -1)
     return RayEnd(r.CONVERGED, met.t, along(o, d, met.t), normal_of(faces, met), 0.0, end.off, 0, 0, 0, visited,
-                  0, 0, -1)
+                  0, nan, 0, -1)
 
 
 @kernel(STRICT)
@@ -193,7 +193,7 @@ def unowned_faces(faces: Faces) -> Faces:
                       unowned(tree.order)), faces.flat)
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def trace_rays(faces: Faces, any_hit: int, origins: Array, directions: Array, pixels: Ints, out: Out) -> None:
     """Trace some of the rays (R, 3) and write each into its row of the columns."""
     mesh, stack = unowned_faces(faces), np.empty(2 * DEEPEST, np.int64)

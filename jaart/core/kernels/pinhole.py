@@ -29,7 +29,7 @@ class View(NamedTuple):
     height: int
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def write_rays(view: View, pixels: NDArray[np.int64], rows: NDArray[np.int64], origins: Array,
                directions: Array) -> None:
     """Write origin and unit direction of the ray through each pixel into a row of (R, 3).

@@ -34,22 +34,23 @@ def is_bad(o: Vector, d: Vector) -> bool:
 @kernel(STRICT)
 def no_hit(state: int) -> RayEnd:
     """The end of a ray that nothing was searched on."""
-    return RayEnd(state, nan, _NOTHING, _NOTHING, nan, nan, 0, 0, 0, 0, 0, 0, -1)
+    return RayEnd(state, nan, _NOTHING, _NOTHING, nan, nan, 0, 0, 0, 0, 0, nan, 0, -1)
 
 
 @kernel(STRICT)
 def added(before: RayEnd, end: End) -> RayEnd:
-    """A ray's end after one more start."""
-    return RayEnd(end.state, end.t, end.point, end.n, end.energy, end.off, end.steps,
+    """A ray's end after one more start. A stretch without any surface leaves the state as it was."""
+    state = before.state if end.state == r.BACKGROUND else end.state
+    return RayEnd(state, end.t, end.point, end.n, end.energy, end.off, end.steps,
                   before.evaluations + end.evaluations, before.used + end.used, before.cells,
-                  before.lowered + end.lowered, before.rows + end.steps, before.missing)
+                  before.lowered + end.lowered, end.gap, before.rows + end.steps, before.missing)
 
 
 @kernel(STRICT)
 def visiting(end: RayEnd, cells: int) -> RayEnd:
     """A ray's end with so many cells or balls visited."""
     return RayEnd(end.state, end.t, end.point, end.n, end.energy, end.off, end.iterations, end.evaluations, end.used,
-                  cells, end.lowered, end.rows, end.missing)
+                  cells, end.lowered, end.gap, end.rows, end.missing)
 
 
 @kernel(STRICT)
@@ -117,7 +118,7 @@ def trace_ray(cells: Cells, plan: Plan, o: Vector, d: Vector, rows: Array, work:
             number, before = number + 1, one.f
             if one.steps > 0 or one.state != r.BACKGROUND:
                 end = added(end, one)
-                end_log(rows, end.rows, one.state)
+                end_log(rows, end.rows if one.steps > 0 else 0, one.state)
             if has_hit(one.state):
                 break
         free = int(cells.empty[cell]) - (cells.halo if cells.stretches == 1 else 0)
@@ -136,9 +137,10 @@ def write_end(out: Out, to: int, end: RayEnd) -> None:
     out.energy[to], out.off_centre[to] = abs(end.energy), end.off
     out.iterations[to], out.evaluations[to] = end.iterations, end.evaluations
     out.neighbours[to], out.cells[to], out.lowered[to] = end.used, end.cells, end.lowered
+    out.gap[to] = end.gap
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def trace_rays(cells: Cells, plan: Plan, origins: Array, directions: Array, pixels: NDArray[np.int64], out: Out,
                rows: Array, work: Array, fit: Array) -> int:
     """Trace some of the rays and write each into its row of the columns; returns the rows of the log it wrote.

@@ -82,7 +82,8 @@ class Value(NamedTuple):
 class Search(NamedTuple):
     """What a search along a ray needs to know; lengths as in the scene.
 
-    kind: number of SEARCHES; evaluate: address of the surface's evaluator; arrived: a shorter step ends it;
+    kind: number of SEARCHES; evaluate, approach, accept: addresses of the surface's evaluator, of what meets the ray
+    with a fitted polynomial (0 for a plane), and of what a hit must pass; arrived: a shorter step ends it;
     by_value: 1 where |f| is compared in its place [A §4]; cap: steps a start; trust: how far from the start;
     growth: 1 to give up as soon as |f| grows; step: of march; energy, emphasise, level: of minimise;
     true_normal: 1 to give hits the normal -∇f.
@@ -90,6 +91,8 @@ class Search(NamedTuple):
 
     kind: int
     evaluate: int
+    approach: int
+    accept: int
     arrived: float
     by_value: int
     cap: int
@@ -106,7 +109,7 @@ class Bounds(NamedTuple):
     """What a hit must keep [T §2.5]: infinite where nothing is asked.
 
     off_centre: largest |a(x) - x|; log_weight: least log Σθ; nearest: largest distance to the nearest surfel;
-    angle: largest |<c/|c|, n>|; gap: least (λ1 - λ0)/λ2.
+    angle: largest |<c/|c|, n>|; gap: least (λ1 - λ0)/λ2, which is measured when it is finite.
     """
 
     off_centre: float
@@ -134,12 +137,44 @@ class Start(NamedTuple):
     number: int
 
 
+class Spent(NamedTuple):
+    """What a start took so far: iterations, evaluations, surfels summed over them, evaluations with fewer degrees."""
+
+    steps: int
+    evaluations: int
+    used: int
+    lowered: int
+
+
+class Met(NamedTuple):
+    """Where a search says that a ray meets the surface.
+
+    state: CONVERGED or FLOOR; t: from the ray's origin; point: in the scene; cell, x: place and local point where v
+    was evaluated; v: the surface there; to: from there to the hit; at_cell, at: place and local point of the hit;
+    energy: the last step, or what is left of f; sided: 1 where f must fall along n; other_fit: 1 where the fit at hand
+    is another point's.
+    """
+
+    state: int
+    t: float
+    point: Vector
+    cell: Cell
+    x: Vector
+    v: Value
+    to: Vector
+    at_cell: Cell
+    at: Vector
+    energy: float
+    sided: int
+    other_fit: int
+
+
 class End(NamedTuple):
     """How a start ended; point and n are NaN unless it hit.
 
     t: of the hit; energy: the last step, or the energy's minimum; off: off-centre value; steps: iterations;
     evaluations: of the surface; used: surfels summed over them; lowered: evaluations with fewer degrees than
-    asked for; f: at the end of the stretch.
+    asked for; f: at the end of the stretch; gap: (λ1 - λ0)/λ2 where it was asked for.
     """
 
     state: int
@@ -153,6 +188,7 @@ class End(NamedTuple):
     used: int
     lowered: int
     f: float
+    gap: float
 
 
 class Plan(NamedTuple):
@@ -185,7 +221,7 @@ class RayEnd(NamedTuple):
 
     energy: length of the last step, or the minimum; off: off-centre value; iterations: steps of the last start;
     evaluations: of all starts; used: surfels summed over them; cells: cells or balls visited; lowered:
-    evaluations with fewer degrees than asked for; rows: written to the log; missing: a ball whose surfels are
+    evaluations with fewer degrees than asked for; gap: as of End; rows: written to the log; missing: a ball whose surfels are
     not gathered yet, else -1.
     """
 
@@ -200,6 +236,7 @@ class RayEnd(NamedTuple):
     used: int
     cells: int
     lowered: int
+    gap: float
     rows: int
     missing: int
 
@@ -217,6 +254,7 @@ class Out(NamedTuple):
     neighbours: NDArray[np.int32]
     cells: NDArray[np.int32]
     lowered: NDArray[np.int32]
+    gap: Array
     status: NDArray[np.uint8]
 
 

@@ -19,7 +19,7 @@ def near_box(cell: int, offset: float, radius: float, n: int) -> tuple[int, int]
     return max(cell + int(ceil(offset - radius)), 0), min(cell + int(np.floor(offset + radius)) + 1, n)
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def scan_near(cells: Ints, offsets: Array, normals: Array, begin: int, end: int, radius: float, shape: Cell,
               first: NDArray[np.int64], counted: NDArray[np.int64], ids: Ints, columns: Array) -> None:
     """Count the surfels begin … end near each cell and, when there is room for them, write them down.
@@ -62,7 +62,7 @@ def least_ahead(line: NDArray[np.uint8], i: int) -> int:
     return best
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def fill_empty(empty: NDArray[np.uint8]) -> None:
     """Turn 0 at cells with a surfel and 255 elsewhere into Chebyshev distances, in place.
 

@@ -131,7 +131,7 @@ def inside(cell: Cell, shape: Cell) -> bool:
     return 0 <= cell[0] < shape[0] and 0 <= cell[1] < shape[1] and 0 <= cell[2] < shape[2]
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def crossed(o: Array, d: Array, shape: Cell, cells: NDArray[np.int32], borders: Array) -> int:
     """Write every cell that a ray crosses, and the t where it crosses into each; returns their number.
 

@@ -79,7 +79,7 @@ def halve(middles: Array, order: Ints, begin: int, end: int, axis: int) -> int:
     return middle
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def divide(middles: Array, leaf: int, tree: Tree) -> int:
     """Fill a tree's first, size and order, depth first; returns the number of its nodes.
 
@@ -105,7 +105,7 @@ def divide(middles: Array, leaf: int, tree: Tree) -> int:
     return node
 
 
-@kernel(STRICT)
+@kernel(STRICT, entry=True)
 def enclose(lows: Array, highs: Array, tree: Tree, nodes: int) -> None:
     """Write the nodes' boxes, last first: of a leaf around its items lows … highs (N, 3), else around its children."""
     for node in range(nodes - 1, -1, -1):

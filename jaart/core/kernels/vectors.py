@@ -4,35 +4,35 @@ from __future__ import annotations
 
 from math import sqrt
 
-from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.jit import EXACT, kernel
 from jaart.core.kernels.records import Vector
 
 
-@kernel(STRICT)
+@kernel(EXACT)
 def dot(a: Vector, b: Vector) -> float:
     """<a, b>."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@kernel(STRICT)
+@kernel(EXACT)
 def length(a: Vector) -> float:
     """|a|."""
     return sqrt(dot(a, a))
 
 
-@kernel(STRICT)
+@kernel(EXACT)
 def along(base: Vector, d: Vector, s: float) -> Vector:
     """base + s·d."""
     return base[0] + s * d[0], base[1] + s * d[1], base[2] + s * d[2]
 
 
-@kernel(STRICT)
+@kernel(EXACT)
 def scaled(a: Vector, s: float) -> Vector:
     """s·a."""
     return s * a[0], s * a[1], s * a[2]
 
 
-@kernel(STRICT)
+@kernel(EXACT)
 def frame(n: Vector) -> tuple[Vector, Vector]:
     """Two unit vectors that are perpendicular to a unit vector and to each other.
 

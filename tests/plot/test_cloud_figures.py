@@ -1,0 +1,125 @@
+"""Figures of a ray through a cloud, and of searches that look at places: drawn from real traces."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from jaart.core.camera import Camera
+from jaart.core.io import load
+from jaart.core.samples import bumpy_sphere
+from jaart.core.scene import Scene
+from jaart.core.settings import Settings
+from jaart.core.trace import trace
+from jaart.plot import scale, searched
+from jaart.plot.energy import energy_figure
+from jaart.plot.projection import projection_figure
+from jaart.plot.scene3d import step_meshes
+from jaart.plot.trace import trace_figure
+
+SHIFT = np.array([30.0, -20.0, 10.0])
+
+
+@pytest.fixture(scope="module")
+def cloud():
+    return Scene("small", points=0.01 * bumpy_sphere(4000).points + SHIFT)
+
+
+def through_middle(scene, settings):
+    """The ray through the middle of a scene's picture."""
+    camera = Camera.fit(scene)
+    origin, direction = camera.rays((1, 1))
+    return trace(scene, settings, origin[0], direction[0])
+
+
+@pytest.fixture(scope="module")
+def ray(cloud):
+    return through_middle(cloud, Settings())
+
+
+def test_things_are_drawn_as_large_as_the_balls(ray):
+    assert scale.is_cloud(ray)
+    assert scale.size(ray) == np.median(ray.balls[:, 3])
+    assert scale.unit(ray) == "units"
+    meshes = step_meshes(ray, 0)
+    around = np.linalg.norm(meshes["solids"].points - ray.query[0], axis=1)
+    assert around.max() < 10 * scale.size(ray)
+    assert len(meshes["full_cells"])
+
+
+def test_stretches_lie_between_the_ends_of_each_ball(ray):
+    ways = scale.stretches(ray)
+    assert ways.shape == (len(ray.balls), 2)
+    for (enter, leave), (*centre, radius) in zip(ways, ray.balls, strict=True):
+        for t in (enter, leave):
+            assert np.linalg.norm(ray.origin + t * ray.direction - centre) == pytest.approx(radius, rel=1e-6)
+
+
+def test_the_circles_in_the_plane_go_through_where_the_ray_pierces_the_balls(ray):
+    axes = projection_figure(ray).axes[0]
+    ways = scale.stretches(ray)
+    found = []
+    for collection in axes.collections:
+        if type(collection).__name__ == "EllipseCollection":
+            for (t, away), wide in zip(collection.get_offsets(), 2 * collection._widths, strict=True):
+                half = np.sqrt((wide / 2) ** 2 - away**2)
+                found.append((t - half, t + half))
+    assert sorted(found) == pytest.approx(sorted(map(tuple, ways)), rel=1e-6)
+
+
+def test_the_energy_plot_of_a_cloud_shows_its_stretches_and_four_curves(ray):
+    axes = energy_figure(ray).axes[0]
+    labels = [line.get_label() for line in axes.lines]
+    assert "$e_{ts}$" in labels
+    size = scale.size(ray)
+    angle = next(line for line in axes.lines if r"\angle" in line.get_label())
+    assert np.nanmax(angle.get_ydata()) == pytest.approx(size * np.nanmax(ray.curves.angle))
+    bars = [c for c in axes.collections if type(c).__name__ == "PolyCollection"]
+    starts = {round(path.vertices[:, 0].min(), 9) for bar in bars for path in bar.get_paths()}
+    assert {round(t, 9) for t in scale.stretches(ray)[:, 0]} <= starts
+
+
+def test_curves_are_not_drawn_where_nothing_is_known(cloud):
+    found = through_middle(cloud, Settings(search="march", max_off_centre=1e-9))
+    t = np.sort(found.curves.t)
+    assert np.diff(t).max() > 10 * np.median(np.diff(t))  # the ray leaves the front balls and enters the back ones
+    line = next(line for line in energy_figure(found).axes[0].lines if line.get_label() == "$e_{oc}$")
+    x, y = line.get_data()
+    gap = int(np.argmax(np.diff(t))) + 1
+    assert np.isnan(y[gap])
+    assert np.isnan(x[gap])
+
+
+def test_lengths_have_digits_that_count(ray):
+    assert scale.text(ray, 1.23456789, 4) == "1.234568"
+    assert scale.step_text(ray, 1.23456e-7, 4, "+") == "+1.23e-07"
+
+
+@pytest.mark.parametrize(("method", "name"), [("tangent", "tangent"), ("off_centre", "off_centre"), ("angle", "angle"),
+                                              ("mahalanobis", "mahalanobis")])
+def test_looks_have_the_energy_that_is_searched(cloud, method, name):
+    found = through_middle(cloud, Settings(method=method, search="minimise"))
+    assert searched.energy_name(found) == name
+    assert searched.looks(found)
+    values = searched.at_steps(found)
+    curves = {"tangent": found.curves.tangent, "off_centre": found.curves.off_centre, "angle": found.curves.angle,
+              "mahalanobis": found.curves.mahalanobis}[name]
+    near = [np.abs(found.curves.t - t).argmin() for t in found.t_query]
+    slack = np.nanmax(np.abs(np.diff(curves[np.isfinite(curves)]))) * 2
+    assert np.nanmax(np.abs(values - curves[near])) <= slack
+
+
+def test_a_level_is_drawn_where_a_minimum_is_searched():
+    found = through_middle(load("standard"), Settings(method="off_centre", level=0.3))
+    lines = [line for line in energy_figure(found).axes[0].lines if line.get_label() == "level"]
+    assert lines[0].get_ydata()[0] == 0.3
+    lines = [line for line in energy_figure(found, level=0.2).axes[0].lines if line.get_label() == "level"]
+    assert lines[0].get_ydata()[0] == 0.2
+    stepping = through_middle(load("standard"), Settings(method="tangent", search="iterate", level=0.3))
+    assert not [line for line in energy_figure(stepping).axes[0].lines if line.get_label() == "level"]
+
+
+def test_the_page_of_a_ray_through_a_cloud_is_drawn(ray, tmp_path):
+    figure = trace_figure(ray, theme="dark")
+    figure.savefig(tmp_path / "ray.svg")
+    assert (tmp_path / "ray.svg").stat().st_size > 5000
