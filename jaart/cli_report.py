@@ -112,8 +112,8 @@ def hits_line(hits: Hits, scene: Scene, quality: Quality | None = None) -> str:
     lines += _taken(hits, scene)
     if quality is not None and quality.relevant:
         unit = "spacings" if scene.kind == "cloud" else "cells"
-        lines.append(f"against the exact surface: delta {quality.delta:.4f}, delta_p {quality.delta_p:.4f} {unit}, "
-                     f"delta_n {quality.delta_n:.4f}")
+        lines.append(f"against the exact surface: delta {quality.delta:.4g}, delta_p {quality.delta_p:.4g} {unit}, "
+                     f"delta_n {quality.delta_n:.4g}")
     return "\n  ".join(lines)
 
 

@@ -24,10 +24,12 @@ LATTICE_H = 0.8
 LATTICE_RADIUS = 3.125
 #: Radius of a cloud's neighbourhood where nobody says, in h: farther surfels weigh less than 1e-7.
 CLOUD_RADIUS = 4.0
-#: Off-centre bound where nobody says, in h: a little more than at the edge of an even sheet, 0.56 h.
-OFF_CENTRE = 0.75
+#: Off-centre bound where nobody says, in h: at the edge of an even sheet it is 0.56 h, where points are uneven more.
+OFF_CENTRE = 1.0
 #: Distance from a surface up to which an energy's minimum is one, in h: 0.3 cells at h = 0.8 [T 2.21].
 NEAR = 0.375
+#: Half the thickness of an isosurface's shell, in samples of its energy.
+SHELL = 0.55
 #: Half the diagonal of a cell: as far as a point in it may be from its centre.
 HALF_DIAGONAL = math.sqrt(3) / 2
 
@@ -143,13 +145,22 @@ def _level(settings: Settings, h: float) -> float:
     if settings.method == "fill_level":
         return 0.5
     name = settings.energy if settings.method == "isosurface" else settings.method
+    if settings.method == "isosurface":
+        return _shell_level(settings, name, h)
     near = NEAR * h
     levels: dict[str, Any] = {"tangent": near, "off_centre": near, "mahalanobis": settings.mahalanobis_c * h * h
                               + near * near, "angle": 0.5}
     level = float(levels.get(name, near))
-    if settings.emphasise and settings.search in ("minimise", "auto"):
-        level = min(1.0, level)
-    return level
+    return min(1.0, level) if settings.emphasise else level
+
+
+def _shell_level(settings: Settings, energy: str, h: float) -> float:
+    """The level of an isosurface: the lowest whose shell, half a sample thick or more, has no holes."""
+    if settings.emphasise or energy == "angle":
+        return 0.9
+    half = SHELL / settings.subdivide
+    return {"tangent": half, "off_centre": math.hypot(half, 0.25 * h),
+            "mahalanobis": 2 * settings.mahalanobis_c * h * h + half * half}[energy]
 
 
 def arrival(settings: Settings, chosen: Chosen) -> float:

@@ -25,7 +25,7 @@ Target = str | PathLike[str]
 #: The vectors of a step, by the name of their columns.
 _VECTORS = {"query": "query", "barycentre": "barycentre", "normal": "step_normal", "next": "next_point"}
 _PER_RAY = ("origin", "direction", "hit", "t", "point", "normal", "status", "off_centre", "energy", "iterations",
-            "evaluations", "neighbours", "cells", "lowered")
+            "evaluations", "neighbours", "cells", "lowered", "gap")
 
 
 def save_picture(picture: NDArray[np.uint8], path: Target) -> None:

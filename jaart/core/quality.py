@@ -52,8 +52,8 @@ def _exact_hits(scene: Scene, hits: Hits, rays: NDArray[np.intp]) -> tuple[Array
 def _cut_off(scene: Scene, hits: Hits, exact_t: Array, rays: NDArray[np.intp]) -> NDArray[np.bool_]:
     """Which of some rays meet a solid beyond the lattice."""
     met = hits.origin[rays] + exact_t[rays, None] * hits.direction[rays]
-    cut: NDArray[np.bool_] = ((met < -TOUCH) | (met > np.add(extents.extent(scene, hits.settings), TOUCH))).any(axis=1)
-    return cut
+    size = np.asarray(extents.extent(scene, hits.settings))
+    return np.asarray(((met < -TOUCH) | (met > size + TOUCH)).any(axis=1))
 
 
 def against(hits: Hits, exact_t: Array, exact_normal: Array, counted: NDArray[np.bool_] | None = None,

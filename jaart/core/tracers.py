@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -66,7 +67,12 @@ class OnLattice:
 
     def scratch(self) -> tuple[Array, Array]:
         """Room for the weights and fits of the cell with the most surfels."""
-        return scratch(int(np.diff(self.cells.sites.first).max(initial=0)))
+        return scratch(self.most)
+
+    @cached_property
+    def most(self) -> int:
+        """Surfels of the cell that has most near it."""
+        return int(np.diff(self.cells.sites.first).max(initial=0))
 
 
 class LatticeTracer(OnLattice):

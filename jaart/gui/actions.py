@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 SAMPLES = {"Splash": "splash", "Standard model": "standard", "Bumpy sphere (points)": "bumpy"}
 SIZES = (256, 512, 768, 1024)
-ABOUT = ("Jaart shows point-based surfaces of fill levels by ray tracing, without a mesh. "
+ABOUT = ("Jaart shows point-based surfaces of fill levels and of point clouds by ray tracing, without a mesh. "
          "Click a pixel to see, step by step, how its ray found the surface.")
 KEYS = """<table cellspacing="6">
 <tr><td>left drag</td><td>turn the scene</td></tr><tr><td>middle or Shift + drag</td><td>move it</td></tr>

@@ -68,8 +68,7 @@ class SceneModel(QObject):
         self.map, self.theme = "shaded", "light"
         self._full: tuple[Hits, Quality | None] | None = None
         self.picked: tuple[int, int] | None = None
-        self.trace: Trace | None = None
-        self.step = 0
+        self.trace, self.step = None, 0  # type: Trace | None, int
         self._worker, self._painter = Worker(self), Worker(self)
         self.shader = Shader(self)
         self._slow = Preparing(self)
@@ -119,9 +118,10 @@ class SceneModel(QObject):
         self._worker.submit("open", lambda job: suited(scene, values, values), lambda made: self._take(*made))
 
     def _take(self, settings: Settings, changed: str) -> None:
-        if settings == self.settings:
-            self._render()  # what was under way was stopped
+        traced = settings.key("rays") == self.settings.key("rays") and self.fault is None
         self.set_settings(settings)
+        if traced and (self.hits is None or self.hits.camera != self.camera or not self.complete):
+            self._render()  # what was under way was stopped
         if changed:
             self.said.emit(changed)
 

@@ -29,7 +29,7 @@ class Job:
     def __init__(self, worker: Worker, kind: str, work: Callable[[Job], Any], done: Callable[[Any], None],
                  partial: Callable[[Any], None] | None, brief: bool) -> None:
         self.kind, self.work, self.done, self.on_partial, self.brief = kind, work, done, partial, brief
-        self.cancel, self.forgotten = threading.Event(), False
+        self.cancel, self.forgotten, self.replaced = threading.Event(), False, False
         self._post, self._superseded, self._shown, self._told = worker.posted.emit, False, False, 0.0
 
     def supersede(self) -> None:
@@ -95,6 +95,8 @@ class Worker(QObject):
             self._drop(kind)
             if self._running is not None and self._running.kind == kind:
                 self._running.supersede()
+            for other in self._open:
+                other.replaced |= other.kind == kind
             self._waiting[kind] = job
             self._open.add(job)
             self._change.notify()
@@ -156,7 +158,7 @@ class Worker(QObject):
             job.on_partial(result)
         elif what == "failed":
             self.failed.emit(result)
-        elif what == "refused":
+        elif what == "refused" and not job.replaced:  # else the settings have changed since
             self.refused.emit(result)
         elif what == "said":
             self.said.emit(result)

@@ -177,7 +177,7 @@ def _level(axes: Axes, trace: Trace, level: float | None, colours: Theme) -> Non
     if level is None or not searched.minimises(trace):
         return
     name = searched.energy_name(trace)
-    at = _in_scale(trace, name, level)
+    at = float(_in_scale(trace, name, level))
     for sign in (1, -1) if name == "tangent" and not trace.settings.emphasise else (1,):
         axes.axhline(sign * at, color=colours.hit, linewidth=1.0, dashes=(6, 2), zorder=2.5,
                      label="level" if sign == 1 else None)

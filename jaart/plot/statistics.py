@@ -56,7 +56,7 @@ def draw_statistics(figure: Figure, statistics: Statistics, theme: str = "light"
     width, height = figure.get_size_inches()
     steps, cells, ends = (figure.add_axes(box) for box in _boxes(width, height, len(notes)))
     _steps(steps, statistics, colours)
-    _histogram(cells, statistics.cells, colours, "Cells or balls a ray", "visited", colours.full_cell)
+    _histogram(cells, statistics.cells, colours, "Cells or balls a ray", "cells or balls visited", colours.full_cell)
     _ends(ends, statistics, colours, notes)
 
 

@@ -114,7 +114,7 @@ def place(figure: Figure, left: float = 0.55, right: float = 0.1, bottom: float 
     """Margins of a figure's only axes in inches: a fixed layout, drawn in half the time of a computed one."""
     width, height = figure.get_size_inches()
     for axis in (axes.yaxis for axes in figure.axes):
-        texts = axis.get_major_formatter().format_ticks(axis.get_majorticklocs())
+        texts = axis.get_major_formatter().format_ticks(list(axis.get_majorticklocs()))
         left = max(left, 0.24 + 0.065 * max(map(len, texts), default=0))
     figure.subplots_adjust(left / width, min(bottom / height, 0.45), 1 - right / width, 1 - min(top / height, 0.45))
 

@@ -33,7 +33,8 @@ def make_hits(t: list[float], normal: list[tuple[float, float, float]] | Array, 
     names = status or ["background" if math.isnan(x) else "converged" for x in t]
     zeros = np.zeros(n, np.int32)
     return Hits(origin, direction, at, origin + at[:, None] * direction, np.array(normal, dtype=float), at * 0, at * 0,
-                zeros, zeros, zeros, zeros, zeros, np.array([STATUS[name] for name in names], np.uint8), Settings())
+                zeros, zeros, zeros, zeros, zeros, at * np.nan, np.array([STATUS[name] for name in names], np.uint8),
+                Settings())
 
 
 def one(t: float, normal: tuple[float, float, float], exact_t: float,

@@ -155,3 +155,12 @@ def test_a_late_picture_says_that_its_points_are_prepared(qtbot, cloudy):
     cloudy.set_value("ball_k", 7)
     settle(qtbot, cloudy)
     assert any("Preparing" in line and "points" in line for line in lines)
+
+
+def test_a_preset_chosen_twice_or_in_the_middle_of_a_picture_ends_in_a_full_one(qtbot, cloudy):
+    cloudy.set_camera(view(cloudy.bounds, "Top"))
+    cloudy.choose_preset("best")
+    settle(qtbot, cloudy)
+    assert cloudy.complete
+    assert cloudy.hits.camera == cloudy.camera
+    assert cloudy.settings == preset("best")

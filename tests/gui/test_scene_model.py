@@ -249,3 +249,19 @@ def test_a_standard_view_can_be_orbited():
     turned = orbit(view(((-2.0, -2.0, 1.0), (2.0, 2.0, 5.0)), "Top"), 10, -20)
     away = np.subtract(turned.eye, turned.target)
     assert np.degrees(np.arcsin(away[2] / np.linalg.norm(away))) == pytest.approx(70)
+
+
+def test_settings_that_were_refused_after_they_changed_are_not_told(qtbot, worker):
+    gate, started, told = threading.Event(), threading.Event(), counted(worker.refused)
+
+    def first(job):
+        started.set()
+        gate.wait(30)
+        raise SettingsError("h = 9: too large")
+
+    worker.submit("picture", first, print, print)
+    started.wait(30)
+    worker.submit("picture", lambda job: "second", lambda result: None, print)
+    gate.set()
+    qtbot.waitUntil(lambda: worker.idle, timeout=PATIENCE)
+    assert not told

@@ -160,7 +160,7 @@ def test_statistics_show_shares_and_counts(size):
     heights = [bar.get_height() for bar in steps.patches[:20]]
     assert sum(heights) == pytest.approx(100)
     assert heights[0] == pytest.approx(100 * 24 / 300)
-    assert cells.get_xlabel() == "cells visited"
+    assert cells.get_xlabel() == "cells or balls visited"
     assert [label.get_text() for label in ends.get_yticklabels()] == ["too many steps", "background", "arrived"]
 
 

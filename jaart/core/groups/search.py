@@ -72,7 +72,7 @@ class BoundarySettings:
         "length", "auto", choices=("auto", "none"), low=0, open_low=True, high=1e6, step=0.01, unit="units",
         group="Boundary", label="Off-centre bound", stage="rays", source="[T 2.21]", when=searches,
         help="A hit farther than this from its barycentre a(x) is refused; it removes shreds at silhouettes. "
-             "auto: 0.75 h; none: no bound.")
+             "auto: h; none: no bound.")
     min_weight: float | str = parameter(
         "number", "none", choices=("none",), low=-1e6, high=100, step=0.5, group="Boundary", label="Least log weight",
         stage="rays", source="[T §2.5]", when=searches,

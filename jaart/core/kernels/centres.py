@@ -20,7 +20,7 @@ from jaart.core.kernels.vectors import along
 _ONE: Any = np.int64(1)
 
 
-@kernel(STRICT)
+@kernel(STRICT, allocates=True)
 def centre_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector, start: Start, rows: Array, row: int,
                   work: Array, fit: Array) -> End:
     """The ray's hit with what the surface is seen as from the centre of the start's place; as `step_search` else.

@@ -36,7 +36,7 @@ def fit_centres(sites: Sites, plan: Plan, begin: int, guesses: Array, work: Arra
     """Evaluate the surface at the centres of the balls begin, begin + 1, ... and keep it in guesses (B, GUESS_WIDTH)."""
     for ball in range(begin, begin + guesses.shape[0]):
         near = surfels_near(sites, (ball, _ZERO, _ZERO))
-        v = evaluate_at(plan.how.evaluate, near, (0.0, 0.0, 0.0), plan.rule, r.VALUE_ONLY, work, fit)
+        v = evaluate_at(plan.how.evaluate, near, (0.0, 0.0, 0.0), plan.rule, r.QUICK, work, fit)
         write_guess(guesses[ball - begin], v, fit)
 
 

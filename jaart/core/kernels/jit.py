@@ -64,11 +64,14 @@ def first_time() -> bool:
     return not (_CACHED and any(CACHE.rglob("*.nbi")))
 
 
-def kernel(flags: set[str] = VECTOR, inline: bool = False, entry: bool = False) -> Callable[[F], F]:
+def kernel(flags: set[str] = VECTOR, inline: bool = False, entry: bool = False,
+           allocates: bool = False) -> Callable[[F], F]:
     """Compile a function to machine code that releases the interpreter's lock.
 
     flags: floating-point freedoms, VECTOR or STRICT; inline: also where the compiler would rather call; entry: it
-    can be called from outside, which the others can where JAART_CALL_KERNELS is set, for a third more compile time.
+    can be called from outside, which the others can where JAART_CALL_KERNELS is set, for a third more compile time;
+    allocates: it makes arrays. The others do not count who uses an array, which would cost two atomic instructions for
+    each that is handed on.
     Division by zero gives infinity or NaN.
     """
 
@@ -77,7 +80,7 @@ def kernel(flags: set[str] = VECTOR, inline: bool = False, entry: bool = False) 
         numba.config.CACHE_DIR = str(CACHE)
         try:
             return numba.njit(function, nogil=True, cache=_CACHED, fastmath=flags, error_model="numpy",
-                              forceinline=inline, no_cfunc_wrapper=True,
+                              forceinline=inline, no_cfunc_wrapper=True, _nrt=allocates,
                               no_cpython_wrapper=not (entry or _CALLABLE))
         finally:
             numba.config.CACHE_DIR = before

@@ -193,7 +193,7 @@ def unowned_faces(faces: Faces) -> Faces:
                       unowned(tree.order)), faces.flat)
 
 
-@kernel(STRICT, entry=True)
+@kernel(STRICT, entry=True, allocates=True)
 def trace_rays(faces: Faces, any_hit: int, origins: Array, directions: Array, pixels: Ints, out: Out) -> None:
     """Trace some of the rays (R, 3) and write each into its row of the columns."""
     mesh, stack = unowned_faces(faces), np.empty(2 * DEEPEST, np.int64)

@@ -22,8 +22,14 @@ Normal = tuple[int, Vector, Vector]
 
 @kernel()
 def surfel_normal(near: Near, s: float, off: Vector, w: Array) -> Normal:
-    """n(x) = Σθn / |Σθn| [T 2.13]; turn = (c - <n, c>n)/|Σθ_N n|, c the off-centre vector."""
-    m = scaled(normal_sums(near, w), 1.0 / s)
+    """n(x) = Σθn / |Σθn| [T 2.13]; see `normal_of_sum`."""
+    return normal_of_sum(normal_sums(near, w), s, off)
+
+
+@kernel()
+def normal_of_sum(total: Vector, s: float, off: Vector) -> Normal:
+    """n = Σθn / |Σθn| [T 2.13]; turn = (c - <n, c>n)/|Σθ_N n|, c the off-centre vector."""
+    m = scaled(total, 1.0 / s)
     size = sqrt(dot(m, m))
     if not size > _CANCELLED:
         return r.UNDEFINED_NORMAL, (nan, nan, nan), (nan, nan, nan)

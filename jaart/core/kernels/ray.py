@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite, nan, sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,7 @@ from jaart.core.kernels.vectors import along
 
 #: From farther away one unit in the last place of the origin is wider than a cell.
 _FAR = 1e15
-_NOTHING = (nan, nan, nan)
+_NOTHING, _OUTSIDE = (nan, nan, nan), (-1, -1, -1)
 
 
 @kernel(STRICT)
@@ -59,39 +60,90 @@ def has_hit(state: int) -> bool:
     return state == r.CONVERGED or state == r.FLOOR
 
 
+class Way(NamedTuple):
+    """How a ray goes through the cells, as in Cells; halo: -1 where a search begins in cells with a surfel only.
+
+    first: t where the ray enters the lattice; leave: t where it leaves it.
+    """
+
+    halo: int
+    uniform: float
+    first: float
+    leave: float
+
+
 @kernel(STRICT)
-def next_cell(cells: Cells, axes: Axes, cell: Cell, t: float, first_t: float, skip: int) -> tuple[float, Cell]:
-    """Where a ray goes on after a cell, and the skipped ones around it; by even steps when so asked."""
-    t_exit, ahead = advance(axes, cell, skip)
-    if cells.uniform == 0.0:
-        return t_exit, ahead
-    steps = np.floor((t - first_t) / cells.uniform + 0.5) + 1.0
+def begins_in(empty: NDArray[np.uint8], axes: Axes, cell: Cell, halo: int) -> Cell:
+    """The cell that a search begins in while the ray is in a cell: it, one beside it, or (-1, -1, -1) for none."""
+    if halo < 0:
+        return start_at(empty, axes, cell)
+    return cell if int(empty[cell]) <= halo else _OUTSIDE
+
+
+@kernel(STRICT)
+def free_around(empty: NDArray[np.uint8], cell: Cell, way: Way) -> int:
+    """How many cells around a cell no search begins in, and may be skipped."""
+    return max(int(empty[cell]) - max(way.halo, 0) - 1, 0)
+
+
+@kernel(STRICT)
+def stride(empty: NDArray[np.uint8], axes: Axes, cell: Cell, t: float, way: Way) -> tuple[float, Cell]:
+    """The next even step of a ray whose step from t on leads beyond what is free around its cell."""
+    skip = free_around(empty, cell, way)
+    steps = np.floor((t - way.first) / way.uniform + 0.5) + 1.0
     if skip > 0:
-        steps = max(steps, np.floor((t_exit - first_t) / cells.uniform))
-    t = first_t + steps * cells.uniform
+        steps = max(steps, np.floor((advance(axes, cell, skip)[0] - way.first) / way.uniform))
+    t = way.first + steps * way.uniform
     return t, cell_at(axes, t)
 
 
 @kernel(STRICT)
-def start_of(cells: Cells, axes: Axes, cell: Cell, o: Vector, d: Vector, t: float, leave: float, trust: float,
-             before: float, number: int) -> tuple[bool, Start]:
-    """Whether a search begins in a cell that the ray is in from t on, and from where.
+def walk(empty: NDArray[np.uint8], axes: Axes, cell: Cell, t: float, way: Way) -> tuple[float, Cell, Cell, int]:
+    """On from a cell to the first that a search begins in: t, the cell, where it begins, and how many were visited.
+
+    The cell is (-1, -1, -1) when the ray leaves the lattice. Exact and even steps have a loop each.
+    """
+    visited, begin = 0, _OUTSIDE
+    while way.uniform == 0.0 and inside(cell, empty.shape) and t <= way.leave:
+        visited += 1
+        begin = begins_in(empty, axes, cell, way.halo)
+        if begin[0] >= 0:
+            return t, cell, begin, visited
+        t, cell = advance(axes, cell, free_around(empty, cell, way))
+    while way.uniform > 0.0 and inside(cell, empty.shape) and t <= way.leave:
+        visited += 1
+        begin = begins_in(empty, axes, cell, way.halo)
+        if begin[0] >= 0:
+            return t, cell, begin, visited
+        t, cell = stride(empty, axes, cell, t, way)
+    return t, _OUTSIDE, _OUTSIDE, visited
+
+
+@kernel(STRICT)
+def start_of(cells: Cells, axes: Axes, cell: Cell, begin: Cell, o: Vector, d: Vector, t: float, leave: float,
+             trust: float, before: float, number: int) -> Start:
+    """Where the search of a cell begins, which the ray is in from t on.
 
     leave: t where the ray leaves the lattice; trust: how far a search may go; before: f at the end of the
     stretch before.
     """
-    if cells.stretches == 1:
-        begin = cell
-        found = int(cells.empty[cell]) <= cells.halo
-        high = min(advance(axes, cell, 0)[0], leave) - t
-        low, high = 0.0, max(high, 0.0)
-    else:
-        begin = start_at(cells.empty, axes, cell)
-        found = begin[0] >= 0
-        low, high, before = -trust, trust, nan
     centre = centre_of(cells.sites, begin)
     base = along((o[0] - centre[0], o[1] - centre[1], o[2] - centre[2]), d, t)
-    return found, Start(begin, base, t, 0.0, low, high, before, number)
+    if cells.stretches == 0:
+        return Start(begin, base, t, 0.0, -trust, trust, nan, number)
+    return Start(begin, base, t, 0.0, 0.0, max(min(advance(axes, cell, 0)[0], leave) - t, 0.0), before, number)
+
+
+@kernel(STRICT)
+def search_cell(cells: Cells, plan: Plan, start: Start, d: Vector, rows: Array, end: RayEnd, work: Array,
+                fit: Array) -> tuple[RayEnd, float]:
+    """A ray's end after the search from one more start, and f at the end of its stretch."""
+    one = search_from(plan.search, cells.sites, plan.rule, plan.how, plan.bounds, d, start, rows, end.rows, work, fit)
+    if one.steps == 0 and one.state == r.BACKGROUND:
+        return end, one.f
+    end = added(end, one)
+    end_log(rows, end.rows if one.steps > 0 else 0, one.state)
+    return end, one.f
 
 
 @kernel(STRICT)
@@ -106,24 +158,24 @@ def trace_ray(cells: Cells, plan: Plan, o: Vector, d: Vector, rows: Array, work:
     axes = axes_of(o, d, shape)
     t, leave = clip(axes)
     end, visited, number, before = no_hit(r.BACKGROUND), 0, 0, nan
-    first_t = t
-    cell = cell_at(axes, t) if t <= leave else (-1, -1, -1)
+    way = Way(cells.halo if cells.stretches == 1 else -1, cells.uniform, t, leave)
+    cell = cell_at(axes, t) if t <= leave else _OUTSIDE
     while inside(cell, shape):
-        visited += 1
-        found, start = start_of(cells, axes, cell, o, d, t, leave, plan.how.trust, before, number)
-        before = nan
-        if found:
-            one = search_from(plan.search, cells.sites, plan.rule, plan.how, plan.bounds, d, start, rows, end.rows,
-                              work, fit)
-            number, before = number + 1, one.f
-            if one.steps > 0 or one.state != r.BACKGROUND:
-                end = added(end, one)
-                end_log(rows, end.rows if one.steps > 0 else 0, one.state)
-            if has_hit(one.state):
-                break
-        free = int(cells.empty[cell]) - (cells.halo if cells.stretches == 1 else 0)
-        t, cell = next_cell(cells, axes, cell, t, first_t, max(free - 1, 0))
-        if not t < leave:  # a skipped block may reach past the lattice
+        at, cell, begin, more = walk(cells.empty, axes, cell, t, way)
+        visited += more
+        if begin[0] < 0:
+            break
+        before = before if more == 1 else nan
+        start = start_of(cells, axes, cell, begin, o, d, at, leave, plan.how.trust, before, number)
+        end, before = search_cell(cells, plan, start, d, rows, end, work, fit)
+        number += 1
+        if has_hit(end.state):
+            break
+        if way.uniform == 0.0:
+            t, cell = advance(axes, cell, free_around(cells.empty, cell, way))
+        else:
+            t, cell = stride(cells.empty, axes, cell, at, way)
+        if not t < leave:
             break
     return visiting(end, visited)
 

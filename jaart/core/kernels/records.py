@@ -273,7 +273,7 @@ SURFEL, COVARIANCE, COVARIANCE_AT_X = range(3)
 ITERATE, SECANT, NEWTON, MINIMISE, MARCH, SAFE, CENTRES = range(7)
 TANGENT_STEP, OFF_CENTRE, MAHALANOBIS, ANGLE, TANGENT = range(5)
 
-#: Values of `want`: the gradient costs a pass of its own.
-VALUE_ONLY, WITH_GRADIENT = range(2)
+#: Values of `want`: the gradient costs a pass of its own; a quick value may leave the weights unwritten.
+VALUE_ONLY, WITH_GRADIENT, QUICK = range(3)
 #: Room for a fitted polynomial: its 15 coefficients.
 FIT_SIZE = 15

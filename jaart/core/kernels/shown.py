@@ -26,8 +26,8 @@ def difference(near: Near, x: Vector, d: Vector, rule: Rule, how: Search, n: Vec
                fit: Array) -> float:
     """∂f/∂d at x by a central difference; n: the normal at x, whose side f is counted from."""
     width = _WIDTH * rule.h
-    a = evaluate_at(how.evaluate, near, along(x, d, width), rule, r.VALUE_ONLY, work, fit)
-    b = evaluate_at(how.evaluate, near, along(x, d, -width), rule, r.VALUE_ONLY, work, fit)
+    a = evaluate_at(how.evaluate, near, along(x, d, width), rule, r.QUICK, work, fit)
+    b = evaluate_at(how.evaluate, near, along(x, d, -width), rule, r.QUICK, work, fit)
     return (a.f * like(a.n, n) - b.f * like(b.n, n)) / (2.0 * width)
 
 

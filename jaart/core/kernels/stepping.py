@@ -83,7 +83,7 @@ def step_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
     """
     s, s_before, ahead_before, f_before, step, off = start.s, nan, nan, inf, nan, nan
     spent = Spent(_NONE, _NONE, _NONE, _NONE)
-    want = r.WITH_GRADIENT if how.kind == r.NEWTON else r.VALUE_ONLY
+    want = r.WITH_GRADIENT if how.kind == r.NEWTON else r.QUICK
     cell, x = start.cell, along(start.base, d, s)
     for done in range(how.cap):
         near = surfels_near(sites, cell)

@@ -10,9 +10,29 @@ from jaart.core.kernels.near import normal, point
 from jaart.core.kernels.records import Array, Near, Rule, Vector
 from jaart.core.kernels.vectors import dot
 from jaart.core.kernels.weigh import slope_factor, square_distance
+from jaart.core.kernels.weights import exp_minus
 
 #: The six different entries xx, xy, xz, yy, yz, zz of a symmetric matrix.
 Symmetric = tuple[float, float, float, float, float, float]
+
+
+@kernel()
+def gaussian_sums(near: Near, x: Vector, h: float) -> tuple[float, Vector, Vector]:
+    """Σθ, Σθ(p - x) and Σθn of all surfels with the Gaussian weight, in one pass that writes no weights down."""
+    per_h = 1.0 / h
+    s = sx = sy = sz = mx = my = mz = 0.0
+    for i in range(near.size):
+        p, n = point(near, i), normal(near, i)
+        qx, qy, qz = p[0] - x[0], p[1] - x[1], p[2] - x[2]
+        w = exp_minus(qx * per_h * (qx * per_h) + qy * per_h * (qy * per_h) + qz * per_h * (qz * per_h))
+        s += w
+        sx += w * qx
+        sy += w * qy
+        sz += w * qz
+        mx += w * n[0]
+        my += w * n[1]
+        mz += w * n[2]
+    return s, (sx, sy, sz), (mx, my, mz)
 
 
 @kernel()

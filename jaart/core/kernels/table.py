@@ -62,7 +62,7 @@ def least_ahead(line: NDArray[np.uint8], i: int) -> int:
     return best
 
 
-@kernel(STRICT, entry=True)
+@kernel(STRICT, entry=True, allocates=True)
 def fill_empty(empty: NDArray[np.uint8]) -> None:
     """Turn 0 at cells with a surfel and 255 elsewhere into Chebyshev distances, in place.
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from math import nan
+from math import inf, nan
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.jit import kernel
-from jaart.core.kernels.normals import covariance_normal, surfel_normal
+from jaart.core.kernels.normals import covariance_normal, normal_of_sum, surfel_normal
 from jaart.core.kernels.records import Array, Near, Rule, Value, Vector
-from jaart.core.kernels.sums import covariance_gradient_sums, offset_sums, surfel_gradient_sums
+from jaart.core.kernels.sums import covariance_gradient_sums, gaussian_sums, offset_sums, surfel_gradient_sums
 from jaart.core.kernels.vectors import dot, scaled
-from jaart.core.kernels.weigh import weigh
+from jaart.core.kernels.weigh import FAINT, weigh
 
 _NOTHING = (nan, nan, nan)
 
@@ -25,9 +25,15 @@ def no_value(state: int, off: Vector, s: float, shift: float) -> Value:
 def tangent_surfel(near: Near, x: Vector, rule: Rule, want: int, w: Array, fit: Array) -> Value:
     """f(x) with the average of the surfels' normals [T 2.13].
 
-    near: surfels; x: relative to their place's centre; want: VALUE_ONLY or WITH_GRADIENT; w: (2·N,) for the
+    near: surfels; x: relative to their place's centre; want: VALUE_ONLY, WITH_GRADIENT or QUICK; w: (2·N,) for the
     weights; fit: unused. ∇f = (2/h²) Σθ_N (n_i·turn + n·(p_i - a))(p_i - a) - n for the Gaussian.
     """
+    if want == r.QUICK and rule.weight == r.GAUSSIAN and rule.k == 0 and rule.reach == inf:
+        s, q, m = gaussian_sums(near, x, rule.h)
+        if s > FAINT:
+            off = scaled(q, 1.0 / s)
+            state, n, _ = normal_of_sum(m, s, off)
+            return Value(state, dot(n, off), n, off, s, 0.0, _NOTHING, 0)
     s, shift = weigh(near, x, rule, w)
     if not s > 0.0:
         return no_value(r.FEW_NEIGHBOURS, _NOTHING, s, shift)

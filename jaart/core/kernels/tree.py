@@ -79,7 +79,7 @@ def halve(middles: Array, order: Ints, begin: int, end: int, axis: int) -> int:
     return middle
 
 
-@kernel(STRICT, entry=True)
+@kernel(STRICT, entry=True, allocates=True)
 def divide(middles: Array, leaf: int, tree: Tree) -> int:
     """Fill a tree's first, size and order, depth first; returns the number of its nodes.
 

@@ -15,7 +15,7 @@ from jaart.core.kernels.weights import exp_minus
 
 _FIRST: Unsigned = np.uint64(0)
 #: Below this Σθ the weights are taken again, relative to the nearest surfel's (a distance of about 12 h).
-_FAINT = 1e-60
+FAINT = 1e-60
 #: Where Wendland's function ends, in h: there it is as wide as the Gaussian at half its height.
 WENDLAND_END = 2.653
 
@@ -66,7 +66,7 @@ def gaussian(near: Near, x: Vector, h: float, reach: float, w: Array) -> tuple[f
         y = square_distance(near, i, x, per_h)
         w[i] = exp_minus(y) if y <= square else 0.0
         s += w[i]
-    if s > _FAINT or near.size == 0:
+    if s > FAINT or near.size == 0:
         return s, 0.0
     nearest_one = nearest(near, x, per_h)
     least = square_distance(near, nearest_one, x, per_h)
