@@ -48,8 +48,8 @@ MESHES = {"fill_level": {"method": "fill_level"},
 
 def main(names: Iterable[str] = ()) -> None:
     scene, chosen = jaart.load("standard"), list(names) or [*METHODS, *MESHES]
-    print(f"{'method':40} {'raster':>6} {'h':>4} {'radius':>6} {'delta':>7} {'angle':>7} {'false hit':>9} {'false miss':>10} "
-          f"{'far':>5}", flush=True)
+    print(f"{'method':40} {'raster':>6} {'h':>4} {'radius':>6} {'delta':>7} {'angle':>7} {'false hit':>9} "
+          f"{'false miss':>10} {'far':>5}", flush=True)
     rows = [row for name in chosen for raster in RASTERS for row in [best(scene, name, raster)]]
     output = Path("out")
     output.mkdir(exist_ok=True)

@@ -16,7 +16,8 @@ from jaart.core.warm import warm_up
 OPTIONS = {
     "nothing": {}, "weight": {"weight": "wendland"}, "normal": {"normal": "covariance"}, "neighbourhood":
     {"neighbourhood": "knn"}, "polynomial": {"method": "polynomial"}, "projection": {"method": "projection"},
-    "cylinder": {"method": "cylinder"}, "off_centre": {"method": "off_centre", "search": "minimise"}, "newton": {"search": "newton"},
+    "cylinder": {"method": "cylinder"}, "off_centre": {"method": "off_centre", "search": "minimise"},
+    "newton": {"search": "newton"},
     "march": {"search": "march"}, "safe": {"search": "safe"}, "centres": {"search": "centres"},
     "true normal": {"shading_normal": "gradient"}, "bounds": {"min_gap": 0.1, "max_nearest": 2.0, "max_angle": 0.9},
 }

@@ -5,9 +5,22 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from jaart.core.addresses import address_of
 from jaart.core.chosen import Chosen, arrival, finite
 from jaart.core.groups.surface import FITTED
-from jaart.core.kernels import accept, approach, call, centres, fitted, march, minimise, project, safe, stepping, tangent
+from jaart.core.kernels import (
+    accept,
+    approach,
+    call,
+    centres,
+    fitted,
+    march,
+    minimise,
+    project,
+    safe,
+    stepping,
+    tangent,
+)
 from jaart.core.kernels import records as r
 from jaart.core.kernels.records import Bounds, Plan, Rule, Search
 from jaart.core.meaning import oriented
@@ -25,15 +38,15 @@ ENERGY_NUMBERS = {"tangent": r.TANGENT_STEP, "off_centre": r.OFF_CENTRE, "mahala
 def plan_of(scene: Scene, settings: Settings, values: Chosen) -> Plan:
     """All that rays need to know beside the surfels; its kernels are compiled or loaded on first use."""
     rule = rule_of(scene, settings, values)
-    evaluate = call.address_of(evaluator(values), call.EVALUATE)
-    meets = call.address_of(approach.approach, call.APPROACH) if rule.degree > 0 else 0
+    evaluate = address_of(evaluator(values), call.EVALUATE)
+    meets = address_of(approach.approach, call.APPROACH) if rule.degree > 0 else 0
     how = Search(kind=SEARCHES[values.search], evaluate=evaluate, approach=meets,
-                 accept=call.address_of(accept.accept, call.ACCEPT), arrived=arrival(settings, values),
+                 accept=address_of(accept.accept, call.ACCEPT), arrived=arrival(settings, values),
                  by_value=int(values.method in FITTED), cap=settings.max_iterations, trust=values.trust,
                  growth=int(settings.bail == "growth"), step=values.step,
                  energy=ENERGY_NUMBERS.get(values.method, r.TANGENT_STEP), emphasise=int(settings.emphasise),
                  level=values.level, true_normal=int(settings.shading_normal == "gradient"))
-    return Plan(rule, how, bounds_of(settings, values), call.address_of(searcher(values), call.SEARCH))
+    return Plan(rule, how, bounds_of(settings, values), address_of(searcher(values), call.SEARCH))
 
 
 def rule_of(scene: Scene, settings: Settings, values: Chosen) -> Rule:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from threading import Event
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,12 +90,12 @@ def _nearest(found: Surfels, empty: NDArray[np.uint8], k: int, exact: bool) -> S
         sizes = np.array([len(one) for one in lists], np.int64)
         ids = np.concatenate(lists).astype(np.int32) if len(lists) else np.empty(0, np.int32)
     else:
-        ids, sizes = np.sort(ids, axis=1).astype(np.int32).ravel(), np.full(len(cells), ids.shape[1], np.int64)
+        ids, sizes = np.sort(ids, axis=1).astype(np.int32).ravel(), np.full(len(cells), len(ids[0]), np.int64)
     _check_memory(len(ids), f"k = {k}")
     counts = np.zeros(empty.size + 1, np.int64)
     counts[1 + np.ravel_multi_index(tuple(cells.T), empty.shape)] = sizes
-    nx, ny, nz = empty.shape
-    return Sites((nx, ny, nz), np.empty((0, 3)), np.cumsum(counts), ids, _columns(found, cells, sizes, ids))
+    shape: Any = empty.shape
+    return Sites(shape, np.empty((0, 3)), np.cumsum(counts), ids, _columns(found, cells, sizes, ids))
 
 
 def _columns(found: Surfels, cells: NDArray[np.intp], sizes: NDArray[np.int64], ids: NDArray[np.int32]) -> Array:

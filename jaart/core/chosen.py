@@ -165,7 +165,8 @@ def _shell_level(settings: Settings, energy: str, h: float) -> float:
 
 def arrival(settings: Settings, chosen: Chosen) -> float:
     """How short a step ends a search: the tolerance counts in h, but in radii where the radius is smaller, for what
-    h does ends there."""
+    h does ends there.
+    """
     return settings.tolerance * min(chosen.h, chosen.radius)
 
 

@@ -1,6 +1,6 @@
-"""Compile every kernel there is into the user's cache, so that no option waits for its own: python -m jaart.core.compile_all.
+"""Compile every kernel there is into the user's cache, so that no option waits for its own.
 
-The window does so beside itself, in a process of low priority, after a first start.
+`python -m jaart.core.compile_all` does it; the window has that run beside itself, at low priority, when it must.
 """
 
 from __future__ import annotations

@@ -80,7 +80,8 @@ class Parameter:
     @property
     def expected(self) -> str:
         """What may be typed, in words."""
-        words = {"flag": "true or false", "vector": "x,y,z", "vectors": "x,y,z or several of them apart by ;", "integer": "a whole number",
+        words = {"flag": "true or false", "vector": "x,y,z",
+                 "vectors": "x,y,z or several of them apart by ;", "integer": "a whole number",
                  "number": "a finite number", "choice": "",
                  "length": "a finite number, or one with d (diagonals) or s (spacings)"}[self.kind]
         bounds = []
@@ -168,7 +169,7 @@ def _check_vector(p: Parameter, value: Value) -> tuple[float, float, float]:
 
 
 def _check_vectors(p: Parameter, value: Value) -> tuple[tuple[float, float, float], ...]:
-    several = value.split(";") if isinstance(value, str) else list(value)
+    several: list[Any] = value.split(";") if isinstance(value, str) else list(value)
     if several and isinstance(several[0], int | float):
         several = [several]
     if not several:

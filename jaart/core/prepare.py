@@ -104,7 +104,8 @@ def tracer(scene: Scene, settings: Settings, values: Chosen, cancel: Event | Non
 
 def balls(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
     """A cloud's points in a grid, and the balls around them."""
-    key = (settings.key("neighbours"), values.neighbourhood, values.radius, meaning.needs_normals(scene, settings, values))
+    key = (settings.key("neighbours"), values.neighbourhood, values.radius,
+           meaning.needs_normals(scene, settings, values))
     return scene.once("balls", key, lambda: cloud_of(scene, settings, values))
 
 

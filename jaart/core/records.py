@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.camera import Camera
 from jaart.core.settings import Settings
-from jaart.core.cloud_surfels import Points
-from jaart.core.surfels import Surfels
+
+if TYPE_CHECKING:
+    from jaart.core.cloud_surfels import Points
+    from jaart.core.surfels import Surfels
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int32]

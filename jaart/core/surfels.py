@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core import placements
-from jaart.core.elvira import elvira
 from jaart.core.filters import filtered
 from jaart.core.gradients import gradients
 from jaart.core.lattice import Mask, interface_cells
@@ -57,7 +56,8 @@ def make_surfels(levels: Array, settings: Settings, spacing: Vector = CUBIC) -> 
     """
     levels = filtered(levels, settings)
     cells = np.argwhere(interface_cells(levels, settings.neighbours, settings.border))
-    across, defined = _normals(_gradients(levels, cells, settings))
+    across, defined = _normals(gradients(levels, cells, settings.border, settings.gradient,
+                                               settings.smoothing))
     cells, across = cells[defined], across[defined]
     offset = placements.offsets(settings.placement, levels[tuple(cells.T)], across)
     if tuple(spacing) == CUBIC:
@@ -94,13 +94,6 @@ def _stretched(cells: NDArray[np.intp], offset: Array, across: Array, spacing: A
     last = np.array(stretched_shape(shape, (spacing[0], spacing[1], spacing[2]))) - 1
     index = np.clip(np.floor(points), 0, last).astype(np.int32)
     return index, points - index - 0.5, normal
-
-
-def _gradients(levels: Array, cells: NDArray[np.intp], settings: Settings) -> Array:
-    """Change of the level (N, 3) at the cells, as the settings say."""
-    if settings.gradient == "elvira":
-        return elvira(levels, cells, settings.border, settings.smoothing)
-    return gradients(levels, cells, settings.border, settings.gradient, settings.smoothing)
 
 
 def _normals(gradient: Array) -> tuple[Array, Mask]:

@@ -18,8 +18,8 @@ from jaart.core.render import unit
 from jaart.core.scene import Scene, frozen
 from jaart.core.settings import Settings
 from jaart.core.tiles import columns_for
-from jaart.core.tracers import OnLattice
 from jaart.core.trace_path import Path, cloud_path, lattice_path, whole
+from jaart.core.tracers import OnLattice
 from jaart.core.warm import warm_up
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -133,17 +131,6 @@ def test_flat_surfaces_of_long_cells_are_met_exactly(gradient: str, placement: s
     assert np.array_equal(surfels.normal, np.tile(np.eye(3)[axis], (len(surfels), 1)))
     assert np.allclose(surfels.points[:, axis], 4.5 * spacing[axis], rtol=0, atol=1e-15)
     assert (surfels.cells >= 0).all() and (surfels.cells < stretched_shape(levels.shape, spacing)).all()
-
-
-def test_elvira_keeps_the_edges_of_a_box() -> None:
-    levels = np.zeros((9, 9, 9))
-    levels[2:7, 2:7, 2:6], levels[2:7, 2:7, 6] = 1, 0.4
-    settings = SimpleNamespace(filter="none", neighbours="6", border="open", gradient="elvira", smoothing=0.8,
-                               placement="exact")
-    surfels = make_surfels(levels, settings)
-    top = (surfels.cells[:, 2] == 6) & ((surfels.cells[:, :2] > 2) & (surfels.cells[:, :2] < 6)).all(axis=1)
-    assert top.sum() == 9 and np.allclose(surfels.normal[top], [0, 0, 1], rtol=0, atol=1e-12)
-    assert np.allclose(surfels.points[top, 2], 6.4, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("placement", ["box", "exact", "exact_centroid"])

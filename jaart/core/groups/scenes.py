@@ -20,14 +20,13 @@ class LatticeSettings:
              "of the inscribed sphere, or of radius ½. interpolated: between the axis-aligned and the diagonal map. "
              "exact: on the plane that cuts off just this volume; exact_centroid: in the middle of that cut.")
     gradient: str = parameter(
-        "choice", "central", choices=("central", "youngs", "smooth", "elvira"), group="Lattice", label="Gradient",
+        "choice", "central", choices=("central", "youngs", "smooth"), group="Lattice", label="Gradient",
         stage="surfels", scenes=LATTICES, source="[T 3.1, 3.2]",
         help="How a cell's normal is found. central: differences of its neighbours. youngs: of all 27 cells around. "
-             "smooth: central differences after a Gauss filter of width σ. elvira: smooth, but where a plane through the "
-             "cell reproduces the levels around it, that plane's.")
+             "smooth: central differences after a Gauss filter of width σ.")
     smoothing: float = parameter(
         "number", 0.8, low=0, open_low=True, high=10, step=0.05, unit="cells", group="Lattice", label="Smoothing σ",
-        stage="surfels", scenes=LATTICES, when=lambda s: s.gradient in ("smooth", "elvira"),
+        stage="surfels", scenes=LATTICES, when=lambda s: s.gradient in ("smooth"),
         help="Width of the Gauss filter before the gradient.")
     neighbours: str = parameter(
         "choice", "6", choices=("6", "26"), group="Lattice", label="Interface rule", stage="surfels",

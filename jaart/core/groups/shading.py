@@ -9,7 +9,7 @@ from jaart.core.parameter import parameter
 
 
 def _phong(settings: Any) -> bool:
-    return settings.shading == "phong"
+    return bool(settings.shading == "phong")
 
 
 def _lit(settings: Any) -> bool:
@@ -17,7 +17,7 @@ def _lit(settings: Any) -> bool:
 
 
 def _water(settings: Any) -> bool:
-    return settings.shading == "water"
+    return bool(settings.shading == "water")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,7 +17,7 @@ MESHES = ("isosurface", "fill_level")
 
 def evaluates(settings: Any) -> bool:
     """Whether weights of surfels enter the surface at all."""
-    return settings.method != "fill_level"
+    return bool(settings.method != "fill_level")
 
 
 def _energetic(settings: Any) -> bool:
@@ -50,8 +50,8 @@ class SurfaceSettings:
     patch: float = parameter(
         "number", 0.0, low=0, high=4, step=0.05, unit="cells", group="Surface", label="Patch of a surfel",
         stage="rays", when=lambda s: s.method == "polynomial", scenes=("lattice", "model"),
-        help="Beyond the sources: a surfel of fill levels is the mean of a patch of the surface, about a cell wide, and "
-             "the polynomial's mean over the patch is fitted to it. 0: the polynomial is fitted to the point alone.")
+        help="Beyond the sources: a surfel of fill levels is the mean of a patch of the surface, about a cell wide, "
+             "and the polynomial's mean over the patch is fitted to it. 0: the polynomial is fitted to the point alone.")
     emphasise: bool = parameter(
         "flag", False, group="Surface", label="Emphasise by the angle", stage="rays", source="[T 2.24]",
         when=_energetic, help="Minimise 1 - (1 - e_angle)(1 - e) in the place of the energy e.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf, nan
+from typing import Any
 
 import numpy as np
 
@@ -22,8 +23,8 @@ _NOTHING = (nan, nan, nan)
 @kernel(STRICT)
 def ended(state: int, energy: float, off: float, spent: Spent, f: float) -> End:
     """The end of a start that did not hit; f: at the end of a stretch."""
-    return End(state, nan, _NOTHING, _NOTHING, energy, off, spent.steps, spent.evaluations, spent.used, spent.lowered, f,
-               nan)
+    return End(state, nan, _NOTHING, _NOTHING, energy, off, spent.steps, spent.evaluations, spent.used, spent.lowered,
+               f, nan)
 
 
 @kernel(STRICT)
@@ -40,7 +41,7 @@ def accept(sites: Sites, rule: Rule, how: Search, bounds: Bounds, met: Met, spen
     Where f rises along n there is no surface, but the change of sign between two sheets that face the same way.
     """
     near, v = surfels_near(sites, met.cell), met.v
-    size = np.int64(near.size)
+    size: Any = np.int64(near.size)
     if met.sided == 1:
         spent = more(spent, 2, size)
         if difference(near, met.x, v.n, rule, how, v.n, work, fit) > 0.0:
@@ -56,6 +57,7 @@ def accept(sites: Sites, rule: Rule, how: Search, bounds: Bounds, met: Met, spen
     if how.true_normal == 1:
         beside = surfels_near(sites, met.at_cell)
         evaluations, n = true_normal(beside, met.at, rule, how, n, work, fit)
-        spent = more(spent, evaluations, np.int64(beside.size))
+        more_surfels: Any = np.int64(beside.size)
+        spent = more(spent, evaluations, more_surfels)
     return End(met.state, met.t, met.point, n, met.energy, length(v.off), spent.steps, spent.evaluations, spent.used,
                spent.lowered, nan, gap)

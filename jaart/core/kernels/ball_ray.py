@@ -141,7 +141,8 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
                 continue
         if start.s != start.s:
             continue
-        one = search_from(plan.search, balls.sites, plan.rule, plan.how, plan.bounds, d, start, rows, end.rows, work, fit)
+        one = search_from(plan.search, balls.sites, plan.rule, plan.how, plan.bounds, d, start, rows, end.rows, work,
+                          fit)
         number += 1
         if one.steps > 0 or one.state != r.BACKGROUND:
             end = added(end, one)

@@ -1,13 +1,12 @@
 """Calls of kernels by their address, so that a search is compiled once for every surface it may search.
 
 A function that is passed as an argument would be compiled anew for each other function, in every process; an
-address is only a number. The caller's and the callee's types must agree: `address_of` sees to that.
+address is only a number. The caller's and the callee's types must agree: the signatures here are what both are
+compiled for.
 """
 
 from __future__ import annotations
 
-from functools import cache
-from threading import Lock
 from typing import Any
 
 from numba import types
@@ -27,8 +26,9 @@ _VALUE = types.NamedTuple((types.int64, types.float64, _VECTOR, _VECTOR, types.f
                            types.int64), r.Value)
 _SITES = types.NamedTuple((_CELL, _ROWS, types.Array(types.int64, 1, "C"), types.Array(types.int32, 1, "C"),
                            _FLOATS), r.Sites)
-_SEARCH = types.NamedTuple((types.int64, types.int64, types.int64, types.int64, types.float64, types.int64, types.int64, types.float64,
-                            types.int64, types.float64, types.int64, types.int64, types.float64, types.int64), r.Search)
+_SEARCH = types.NamedTuple((types.int64,) * 4 + (types.float64, types.int64, types.int64, types.float64, types.int64,
+                                                 types.float64, types.int64, types.int64, types.float64,
+                                                 types.int64), r.Search)
 _BOUNDS = types.NamedUniTuple(types.float64, 5, r.Bounds)
 _START = types.NamedTuple((_CELL, _VECTOR) + (types.float64,) * 5 + (types.int64,), r.Start)
 _END = types.NamedTuple((types.int64, types.float64, _VECTOR, _VECTOR, types.float64, types.float64) +
@@ -46,7 +46,6 @@ APPROACH = types.float64(_VALUE, _VECTOR, types.float64, types.float64, _RULE, _
 #: accept(sites, rule, how, bounds, met, spent, work, fit) -> End.
 ACCEPT = _END(_SITES, _RULE, _SEARCH, _BOUNDS, _MET, _SPENT, _FLOATS, _FLOATS)
 
-_LOCK = Lock()
 
 
 def _caller(signature: Any) -> Any:
@@ -89,15 +88,3 @@ def accept_at(typing_context: Any, address: Any, sites: Any, rule: Any, how: Any
               work: Any, fit: Any) -> Any:
     """Let what stands at an address say what becomes of a hit."""
     return ACCEPT.return_type(types.int64, *ACCEPT.args), _caller(ACCEPT)
-
-
-@cache
-def address_of(function: Any, signature: Any) -> int:
-    """Where the machine code of a kernel begins, compiled or loaded for exactly these types."""
-    with _LOCK:
-        function.compile(signature.args)
-        compiled = function.overloads[signature.args]
-        assert compiled.signature.return_type == signature.return_type, (function, compiled.signature)
-        address: int = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
-        return address
-

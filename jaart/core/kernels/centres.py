@@ -42,6 +42,7 @@ def centre_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vect
         write_step(rows, row, sites, start, 0.0, start.cell, centre, v, s)
     if s != s or not located(sites, start, d, s)[2]:
         return nothing_found(r.LEFT_TRUST, 1, 1, size, lowered, v.f)
-    met = Met(r.CONVERGED, start.t + s, in_scene(sites, start.cell, x), start.cell, centre, v, x, start.cell, x, v.f, 0, 0)
+    point = in_scene(sites, start.cell, x)
+    met = Met(r.CONVERGED, start.t + s, point, start.cell, centre, v, x, start.cell, x, v.f, 0, 0)
     spent = Spent(_ONE, _ONE, size, lowered)
     return accept_at(how.accept, sites, rule, how, bounds, met, spent, work, fit)

@@ -33,7 +33,7 @@ def write_guess(row: Array, v: Value, fit: Array) -> None:
 
 @kernel(STRICT, entry=True)
 def fit_centres(sites: Sites, plan: Plan, begin: int, guesses: Array, work: Array, fit: Array) -> None:
-    """Evaluate the surface at the centres of the balls begin, begin + 1, ... and keep it in guesses (B, GUESS_WIDTH)."""
+    """Keep the surface at the centres of the balls begin, begin + 1, ... in guesses (B, GUESS_WIDTH)."""
     for ball in range(begin, begin + guesses.shape[0]):
         near = surfels_near(sites, (ball, _ZERO, _ZERO))
         v = evaluate_at(plan.how.evaluate, near, (0.0, 0.0, 0.0), plan.rule, r.QUICK, work, fit)

@@ -90,13 +90,14 @@ def step_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
         if near.size == 0:
             return ended(r.FEW_NEIGHBOURS, step, off, spent, nan)
         v = evaluate_at(how.evaluate, near, x, rule, want, work, fit)
+        size: Any = np.int64(near.size)
         fewer = 1 if v.state == r.CONTINUE and v.degree < rule.degree else 0
-        spent = Spent(done + 1, spent.evaluations + 1, spent.used + np.int64(near.size), spent.lowered + fewer)
+        spent = Spent(done + 1, spent.evaluations + 1, spent.used + size, spent.lowered + fewer)
         slope, steepness, off = dot(v.n, d), dot(v.gradient, d), length(v.off)
         ahead, differed = ahead_of(v, d, slope, how, rule, fit), 0
         if v.state == r.CONTINUE and how.kind == r.NEWTON and steepness != steepness:
             steepness, differed = difference(near, x, d, rule, how, v.n, work, fit), 1
-            spent = more(spent, 2, np.int64(near.size))
+            spent = more(spent, 2, size)
         step = next_step(how, v, ahead, s, s_before, ahead_before, steepness)
         if rows.shape[0] > 0:
             write_step(rows, row + done, sites, start, s, cell, x, v, step)

@@ -44,8 +44,8 @@ def hit_at(state: int, sites: Sites, rule: Rule, how: Search, bounds: Bounds, d:
         return nothing_found(v.state, steps, evaluations, used, lowered, nan)
     x = along(start.base, d, s)
     sided = 0 if how.kind == r.MINIMISE else 1
-    met = Met(state, start.t + s, in_scene(sites, start.cell, x), start.cell, x, v, (0.0, 0.0, 0.0), start.cell, x, energy,
-              sided, 1)
+    point = in_scene(sites, start.cell, x)
+    met = Met(state, start.t + s, point, start.cell, x, v, (0.0, 0.0, 0.0), start.cell, x, energy, sided, 1)
     return accept_at(how.accept, sites, rule, how, bounds, met, Spent(steps, evaluations, used, lowered), work, fit)
 
 
