@@ -51,7 +51,7 @@ class SurfaceSettings:
         "number", 0.0, low=0, high=4, step=0.05, unit="cells", group="Surface", label="Patch of a surfel",
         stage="rays", when=lambda s: s.method == "polynomial", scenes=("lattice", "model"),
         help="Beyond the sources: a surfel of fill levels is the mean of a patch of the surface, about a cell wide, "
-             "and the polynomial's mean over the patch is fitted to it. 0: the polynomial is fitted to the point alone.")
+             "and the polynomial's mean over the patch is fitted to it. 0: it is fitted to the point alone.")
     emphasise: bool = parameter(
         "flag", False, group="Surface", label="Emphasise by the angle", stage="rays", source="[T 2.24]",
         when=_energetic, help="Minimise 1 - (1 - e_angle)(1 - e) in the place of the energy e.")
