@@ -119,8 +119,8 @@ def render(
         scene: SceneName, size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None,
         preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None, frame: Frame = None,
         map_: Annotated[str, typer.Option("--map", metavar="NAME", help=(
-            "What colours mean: shaded, iterations, evaluations, off_centre, depth, status, distance_error, "
-            "normal_error."))] = "shaded",
+            "What colours mean: shaded, iterations, evaluations, off_centre, sampling, lowered, depth, status, "
+            "distance_error, normal_error."))] = "shaded",
         rays: Annotated[Path | None, typer.Option(metavar="FILE", help=(
             "Trace the origins and directions (R, 3) of this .npz instead of a camera's; needs --hits."))] = None,
         threads: Threads = None,
@@ -143,7 +143,7 @@ def render(
         typed.output(hits, "--hits", ".npz")
     shape, chosen = typed.size(size), typed.settings(preset, set_ or [])
     loaded, chosen = files.open_scene(scene, frame, chosen, preset, set_)
-    files.check_map(map_, loaded)
+    files.check_map(map_, loaded, chosen)
     listed = None if rays is None else typed.rays(rays)
     view = None if rays is not None else typed.camera(camera or [], loaded, chosen, shape)
 
@@ -189,6 +189,7 @@ def trace(
         raise typed.usage("--camera", "has no meaning with --origin and --direction")
     (loaded, chosen), up = files.open_scene(scene, frame, chosen, preset, set_), (0.0, 0.0, 1.0)
 
+    from jaart.core.chosen import chosen as values_of
     from jaart.core.trace import trace as follow
 
     if at is not None:
@@ -198,7 +199,7 @@ def trace(
     report.say_compiling()
     followed = follow(loaded, chosen, *ray, pixel=at)
     report.say_notes(loaded, chosen)
-    files.write_trace(followed, output, up)
+    files.write_trace(followed, output, up, values_of(loaded, chosen).level)
     print(report.trace_line(followed))
     print(f"wrote {output}")
 

@@ -37,14 +37,13 @@ def open_scene(source: str, frame: int | None, chosen: Settings, preset: str, as
     return scene, fitting
 
 
-def check_map(name: str, scene: Scene) -> None:
-    """Raise SettingsError for a map that there is not, or not of this scene."""
-    from jaart.core.maps import find
+def check_map(name: str, scene: Scene, settings: Settings) -> None:
+    """Raise SettingsError for a map that there is not, or not of this scene with these settings."""
+    from jaart.core.maps import lacks
     from jaart.core.quality import known
 
-    find(name)
-    if name.endswith("_error") and not known(scene):
-        raise SettingsError(f"map {name}: needs an exact surface, which nobody knows of {scene.source}")
+    if what := lacks(name, known(scene), settings):
+        raise SettingsError(f"map {name}: needs {what} ({scene.source})")
 
 
 def write_picture(colours: Bytes, found: Hits, scene: Scene, errors: Quality | None, map_: str, output: Path) -> None:
@@ -93,8 +92,10 @@ def _meaning(found: Hits, scene: Scene, errors: Quality | None, map_: str) -> st
     return f", colours from {low:g} to {high:g} {unit}".rstrip() + ", what lies beyond has the last colour"
 
 
-def write_trace(followed: Trace, output: Path, up: tuple[float, float, float]) -> None:
-    """Write one ray as .json, .csv or .svg, whichever the name says; up: the camera's, for the plots."""
+def write_trace(followed: Trace, output: Path, up: tuple[float, float, float], level: float) -> None:
+    """Write one ray as .json, .csv or .svg, whichever the name says; up: the camera's, for the plots; level: below
+    which a minimum counts.
+    """
     from jaart.core import export
 
     if output.suffix.lower() == ".json":
@@ -104,7 +105,7 @@ def write_trace(followed: Trace, output: Path, up: tuple[float, float, float]) -
     else:
         from jaart.plot.trace import trace_figure
 
-        save_figure(trace_figure(followed, up=up), output)
+        save_figure(trace_figure(followed, up=up, level=level), output)
 
 
 def save_figure(figure: Figure, path: Path) -> None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from jaart.core.errors import SettingsError
 from jaart.core.records import STATUS_NAMES, Hits, Quality
+from jaart.core.settings import Settings
 
 Array = NDArray[np.float64]
 Values = Callable[[Hits, Quality | None], Array]
@@ -60,6 +61,14 @@ def _depth(hits: Hits, quality: Quality | None) -> Array:
     return np.where(hits.hit, hits.t, np.nan)
 
 
+def _sampling(hits: Hits, quality: Quality | None) -> Array:
+    return np.where(hits.hit, hits.gap, np.nan)
+
+
+def _lowered(hits: Hits, quality: Quality | None) -> Array:
+    return np.where(hits.evaluations > 0, hits.lowered, np.nan)
+
+
 def _status(hits: Hits, quality: Quality | None) -> Array:
     return hits.status.astype(np.float64)
 
@@ -78,6 +87,8 @@ MAPS: dict[str, Map] = {m.name: m for m in (
     Map("iterations", "Iterations of the last start", "", _iterations, whole=True),
     Map("evaluations", "Evaluations of all starts", "", _evaluations, whole=True),
     Map("off_centre", "Off-centre value of hits", "cells", _off_centre),
+    Map("sampling", "Sampling (λ1 - λ0)/λ2 of hits", "", _sampling),
+    Map("lowered", "Evaluations with fewer degrees", "", _lowered, whole=True),
     Map("depth", "Depth", "cells", _depth, zero=False),
     Map("status", "How the ray ended", "", _status, whole=True),
     Map("distance_error", "Distance from the exact surface", "cells", _distance_error),
@@ -90,6 +101,19 @@ def find(name: str) -> Map:
     if name not in MAPS:
         raise SettingsError(f"no map is called {name!r}; there are {', '.join(MAPS)}")
     return MAPS[name]
+
+
+def lacks(name: str, exact: bool, settings: Settings) -> str:
+    """What a map needs and has not, in words; "" when it can be drawn. exact: whether the exact surface is known.
+
+    Raises SettingsError for a name that does not exist.
+    """
+    find(name)
+    if name.endswith("_error") and not exact:
+        return "an exact surface, which nobody knows of this scene"
+    if name == "sampling" and settings.min_gap == "none":
+        return "min_gap, which has it measured; 0 refuses no hit"
+    return ""
 
 
 def unit(name: str, kind: str) -> str:

@@ -9,7 +9,7 @@ from qtpy.QtCore import QSignalBlocker, Qt
 from qtpy.QtGui import QAction, QActionGroup, QKeySequence, QStandardItemModel
 from qtpy.QtWidgets import QComboBox, QLabel, QMenu, QSizePolicy, QSpinBox, QToolBar, QToolButton, QWidget
 
-from jaart.core.maps import MAPS
+from jaart.core.maps import MAPS, lacks
 from jaart.core.quality import known
 from jaart.gui.navigation import VIEWS
 
@@ -43,7 +43,8 @@ class Actions:
         self._show_menu()
         self._help_menu()
         self._toolbar()
-        for signal in (self.model.map_changed, self.model.theme_changed, self.model.scene_changed):
+        for signal in (self.model.map_changed, self.model.theme_changed, self.model.scene_changed,
+                       self.model.settings_changed):
             signal.connect(self.refresh)
         self.refresh()
 
@@ -54,7 +55,7 @@ class Actions:
         self.map_actions[self.model.map].setChecked(True)
         items = self.maps.model()
         for row, name in enumerate(MAPS):
-            allowed = exact or not name.endswith("_error")
+            allowed = not lacks(name, exact, self.model.settings)
             self.map_actions[name].setEnabled(allowed)
             assert isinstance(items, QStandardItemModel)
             items.item(row).setEnabled(allowed)
@@ -65,7 +66,7 @@ class Actions:
             self.frame.setSuffix(f"  (0 to {scene.frames - 1})" if scene is not None else "")
             self.frame.setValue(scene.frame if scene is not None else 0)
         self.frame_action.setVisible(scene is not None and scene.frames > 1)
-        if self.model.map.endswith("_error") and not exact and scene is not None:
+        if scene is not None and lacks(self.model.map, exact, self.model.settings):
             self.model.set_map("shaded")
 
     def _file_menu(self) -> None:

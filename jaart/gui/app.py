@@ -15,7 +15,7 @@ from jaart.core.settings import PRESETS, Settings, preset
 from jaart.gui.libraries import check
 
 if TYPE_CHECKING:
-    from qtpy.QtCore import Qt
+    from qtpy.QtCore import QProcess, Qt
 
     from jaart.gui.main_window import MainWindow
 
@@ -40,6 +40,7 @@ def run(source: str | PathLike[str] | None = None, settings: Settings | None = N
     from qtpy.QtWidgets import QApplication
 
     from jaart.gui import garbage
+    from jaart.gui.compiling import compile_beside, end
     from jaart.gui.main_window import MainWindow
     from jaart.gui.model import PICTURE
     from jaart.gui.screenshot import Screenshot
@@ -51,6 +52,9 @@ def run(source: str | PathLike[str] | None = None, settings: Settings | None = N
     window.model.set_settings(settings or preset(next(iter(PRESETS))))
     window.closed.connect(loop.quit)
     window.loader.finished.connect(garbage.set_aside)
+    beside: list[QProcess | None] = []
+    if screenshot is None:
+        window.loader.finished.connect(lambda: beside.append(compile_beside(window)), _once())
     problems: list[str] = []
     end_without_a_scene(window, problems)
     if screenshot is not None:
@@ -64,6 +68,8 @@ def run(source: str | PathLike[str] | None = None, settings: Settings | None = N
     window.show()
     window.model.open(source or SAMPLE, frame, camera)
     loop.exec()
+    for process in beside:
+        end(process)
     signal.signal(signal.SIGINT, interrupt)
     if problems:
         raise JaartError(problems[0])

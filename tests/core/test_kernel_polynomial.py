@@ -18,13 +18,13 @@ POWERS = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2)
           (4, 0), (3, 1), (2, 2), (1, 3), (0, 4)]
 
 
-def fitted(u: Array, v: Array, height: Array, weight: Array, degree: int) -> tuple[int, Array]:
+def fitted(u: Array, v: Array, height: Array, weight: Array, degree: int, patch: float = 0.0) -> tuple[int, Array]:
     """The degree that was used and the coefficients."""
     rows = len(u)
     work = np.full(polynomial.SCRATCH_COLUMNS * rows, np.nan)
     work[:4 * rows] = np.concatenate([u, v, height, weight])
     coefficients = np.full(polynomial.COEFFICIENTS, np.nan)
-    return polynomial.fit(work, np.uint64(rows), degree, coefficients), coefficients
+    return polynomial.fit(work, np.uint64(rows), degree, patch, coefficients), coefficients
 
 
 def g(c: Array, u: float, v: float) -> float:
@@ -169,3 +169,26 @@ def test_a_ray_past_the_origin() -> None:
                 g(c, x[0], x[1]) - x[2], rel=1e-11, abs=1e-11)
         assert polynomial.line_polynomial(c, (0.0, 0.0, 0.0), tuple(d.tolist())) == pytest.approx(
             polynomial.ray_polynomial(c, tuple(d.tolist())), rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("degree", range(5))
+def test_a_patch_gives_back_the_polynomial_whose_means_were_measured(degree: int) -> None:
+    rng = np.random.default_rng(degree)
+    many, m, h = polynomial.terms(degree), 0.13, rng.normal(size=15)
+    h[many:] = 0.0
+    u, v = rng.uniform(-2, 2, (2, 60))
+    nodes, shares = np.polynomial.hermite_e.hermegauss(9)
+    shares = shares / shares.sum()
+    steps = np.sqrt(m) * nodes  # the mean over a Gaussian patch, exact for degrees up to 17
+    means = np.array([sum(a * b * g(h, x + i, y + j) for a, i in zip(shares, steps, strict=True)
+                          for b, j in zip(shares, steps, strict=True)) for x, y in zip(u, v, strict=True)])
+    used, c = fitted(u, v, means, np.ones(60), degree, m)
+    assert used == degree
+    np.testing.assert_allclose(c, h, rtol=0, atol=1e-12)
+
+
+def test_a_square_patch_as_wide_as_a_cell_has_a_twelfth_of_variance() -> None:
+    u, v = np.random.default_rng(3).uniform(-2, 2, (2, 40))
+    means = 0.5 * (u**2 + 1 / 12) - 0.25 * (v**2 + 1 / 12) + 0.1 * u * v  # of u²/2 - v²/4 + uv/10 over unit squares
+    _, c = fitted(u, v, means, np.ones(40), 2, 1 / 12)
+    np.testing.assert_allclose(c[:6], (0, 0, 0, 0.5, 0.1, -0.25), rtol=0, atol=1e-14)

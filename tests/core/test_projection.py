@@ -27,8 +27,9 @@ def one_step(origin, direction, t, barycentre, normal):
         off_centre=np.array([np.linalg.norm(a - x)]), weight_sum=np.ones(1), start=np.zeros(1, np.int32),
         step_cell=np.floor(x)[None].astype(np.int32), outcome=("cap",), neighbours=(np.empty(0, np.int64),),
         weights=(NOTHING,), cells=np.empty((0, 3), np.int32), borders=NOTHING, with_surfel=np.empty(0, bool),
-        surfels=Surfels(np.empty((0, 3), np.int32), np.empty((0, 3)), np.empty((0, 3))), curves=Curves(*[NOTHING] * 4),
-        settings=Settings(), extent=(4.0, 4.0, 4.0))
+        surfels=Surfels(np.empty((0, 3), np.int32), np.empty((0, 3)), np.empty((0, 3))), curves=Curves(*[NOTHING] * 5),
+        settings=Settings(), balls=np.empty((0, 4)),
+        low=np.zeros(3), high=np.full(3, 4.0))
 
 
 def test_exact_numbers():

@@ -107,13 +107,22 @@ def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, number: 
 
 
 @kernel(STRICT)
+def in_units(tree: Tree, o: Vector, h: float) -> Vector:
+    """An origin in units of the cloud's longest edge or of h, whichever is longer."""
+    unit = h
+    for axis in range(3):
+        unit = max(unit, tree.high[0, axis] - tree.low[0, axis])
+    return o[0] / unit, o[1] / unit, o[2] / unit
+
+
+@kernel(STRICT)
 def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, work: Array, fit: Array, keys: Array,
                    items: Ints) -> RayEnd:
     """The first hit of a ray, or how its last start ended; `missing` names a ball to gather first.
 
     o, d: origin and unit direction in the cloud's local frame; keys, items: room for the heap.
     """
-    if is_bad(o, d):
+    if is_bad(in_units(balls.tree, o, plan.rule.h), d):
         return no_hit(r.BAD_RAY)
     inverse = (1.0 / d[0], 1.0 / d[1], 1.0 / d[2])
     count, room = balls.centres.shape[0], keys.shape[0] - _LEAF_ROOM
@@ -133,13 +142,11 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
         if balls.slot[ball] < 0 or balls.slot[ball] >= balls.ready:
             return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, nan, 0, ball)
         start = start_in(balls, plan, ball, o, d, number)
-        if item < count:
-            visited += 1
-            if balls.stretches == 0 and balls.any_hit == 0:
-                if start.s == start.s and start.t + start.s > 0.0:
-                    size = push(keys, items, size, start.t + start.s, count + ball)
-                continue
-        if start.s != start.s:
+        visited += 1 if item < count else 0
+        if balls.stretches == 0 and not start.t + start.s > 0.0:
+            continue
+        if item < count and balls.stretches == 0 and balls.any_hit == 0:
+            size = push(keys, items, size, start.t + start.s, count + ball)
             continue
         one = search_from(plan.search, balls.sites, plan.rule, plan.how, plan.bounds, d, start, rows, end.rows, work,
                           fit)
