@@ -26,6 +26,10 @@ LATTICE_RADIUS = 3.125
 CLOUD_RADIUS = 4.0
 #: Off-centre bound where nobody says, in h: at the edge of an even sheet it is 0.56 h, where points are uneven more.
 OFF_CENTRE = 1.0
+#: Distance to the nearest point up to which a cloud has a surface where nobody says, in h.
+CLOUD_NEAREST = 1.5
+#: Steps of march, in h, and of the uniform traversal, in cells, where nobody says.
+MARCH_STEP, STRIDE = 0.25, 1.0
 #: Distance from a surface up to which an energy's minimum is one, in h: 0.3 cells at h = 0.8 [T 2.21].
 NEAR = 0.375
 #: Half the thickness of an isosurface's shell, in samples of its energy.
@@ -40,7 +44,8 @@ class Chosen:
 
     method, search, weight, normal, neighbourhood: as in the settings, none of them auto; h: feature size; radius:
     of the neighbourhood, infinite where k counts; trust: how far a search goes from its start; off_centre,
-    nearest: bounds, infinite for none; level: of the energy or mesh; step: of march.
+    nearest: bounds, infinite for none; level: of the energy or mesh; step: of march;
+    stride: of the uniform traversal.
     """
 
     method: str
@@ -55,6 +60,7 @@ class Chosen:
     nearest: float
     level: float
     step: float
+    stride: float
 
 
 def chosen(scene: Scene, settings: Settings) -> Chosen:
@@ -72,8 +78,10 @@ def chosen(scene: Scene, settings: Settings) -> Chosen:
         method=settings.method, search=search, weight=settings.weight, normal=_normal(scene, settings),
         neighbourhood=neighbourhood, h=h, radius=radius, trust=_or_length(scene, settings, "trust", trust),
         off_centre=_or_length(scene, settings, "max_off_centre", OFF_CENTRE * h),
-        nearest=_or_length(scene, settings, "max_nearest", math.inf), level=_level(settings, h),
-        step=settings.step if lattice else settings.step * h)
+        nearest=_or_length(scene, settings, "max_nearest", math.inf if lattice else CLOUD_NEAREST * h),
+        level=_level(settings, h),
+        step=MARCH_STEP * h if isinstance(settings.step, str) else settings.step * (1.0 if lattice else h),
+        stride=STRIDE if isinstance(settings.step, str) else settings.step)
 
 
 def length(scene: Scene, settings: Settings, name: str) -> float:

@@ -67,4 +67,5 @@ def warm_up() -> None:
 
 
 _SMALL = Chosen(method="cylinder", search="iterate", weight="gaussian", normal="surfel", neighbourhood="cell_ball",
-                h=1.0, radius=reach(1.0), trust=1.0, off_centre=math.inf, nearest=math.inf, level=0.0, step=1.0)
+                h=1.0, radius=reach(1.0), trust=1.0, off_centre=math.inf, nearest=math.inf, level=0.0, step=1.0,
+                stride=1.0)

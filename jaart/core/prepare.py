@@ -98,7 +98,7 @@ def tracer(scene: Scene, settings: Settings, values: Chosen, cancel: Event | Non
         return cylinder_tracer(values, plan_of(scene, settings, values), lambda near: cells(scene, ball, near, cancel))
     made = cells(scene, settings, values, cancel)
     stretches = values.search in STRETCHES
-    uniform = settings.step if settings.traversal == "uniform" else 0.0
+    uniform = values.stride if settings.traversal == "uniform" else 0.0
     return LatticeTracer(made._replace(stretches=int(stretches), uniform=uniform), plan_of(scene, settings, values))
 
 

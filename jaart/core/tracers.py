@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from jaart.core.kernels import ray
+from jaart.core.kernels.guess import GUESS_WIDTH
 from jaart.core.kernels.records import FIT_SIZE, LOG_WIDTH, Cells, Out, Plan, Sites
 from jaart.core.scene import Array
 from jaart.core.tiles import Pixels
@@ -85,5 +86,5 @@ class LatticeTracer(OnLattice):
 
 
 def scratch(most: int) -> tuple[Array, Array]:
-    """Room for the weights and fits of so many surfels, for one thread."""
-    return np.empty(SCRATCH_A_SURFEL * max(most, 1)), np.zeros(FIT_SIZE)
+    """Room for the weights and fits of so many surfels, and for what is kept of a centre, for one thread."""
+    return np.empty(SCRATCH_A_SURFEL * max(most, 1)), np.zeros(FIT_SIZE + GUESS_WIDTH)

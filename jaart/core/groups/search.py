@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from jaart.core.groups.surface import MESHES
+from jaart.core.groups.surface import ENERGIES, MESHES
 from jaart.core.parameter import Length, parameter
 
 #: Searches that step from x to x, and those that look at a stretch of the ray.
@@ -19,7 +19,7 @@ def searches(settings: Any) -> bool:
 
 
 def _steps(settings: Any) -> bool:
-    return searches(settings) and settings.search in STEPPING
+    return searches(settings) and settings.search in (*STEPPING, "auto") and settings.method not in ENERGIES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,12 +36,12 @@ class SearchSettings:
              "auto: iterate, or minimise for an energy.")
     tolerance: float = parameter(
         "number", 0.125, low=0, high=10, step=0.005, unit="h", group="Search", label="Tolerance",
-        stage="rays", source="[T 2.14]", when=searches,
+        stage="rays", source="[T 2.14]", when=lambda s: searches(s) and s.search not in ("march", "centres"),
         help="A ray has arrived when its next step is shorter than this; it counts in radii where the radius is "
              "below h.")
     max_iterations: int = parameter(
         "integer", 20, low=1, high=10_000, step=1, group="Search", label="Iterations a start", stage="rays",
-        source="[T §2.4.5, footnote 14]", when=searches,
+        source="[T §2.4.5, footnote 14]", when=_steps,
         help="After so many steps from one start the ray tries the next cell.")
     trust: Length | str = parameter(
         "length", "radius", choices=("radius",), low=0, open_low=True, high=1e6, step=0.25, unit="cells",
@@ -57,11 +57,11 @@ class SearchSettings:
         source="[T §3.1.4]", scenes=("lattice", "model"), when=searches,
         help="How the cells along a ray are found. exact visits every cell it crosses; uniform goes on by the step "
              "and misses some.")
-    step: float = parameter(
-        "number", 1.0, low=0, open_low=True, high=100, step=0.05, unit="cells", group="Search", label="Step",
-        stage="rays", source="[T §2.3.5, 3.1.4]",
+    step: float | str = parameter(
+        "number", "auto", choices=("auto",), low=0, open_low=True, high=100, step=0.05, unit="cells",
+        group="Search", label="Step", stage="rays", source="[T §2.3.5, 3.1.4]",
         when=lambda s: searches(s) and (s.search == "march" or s.traversal == "uniform"),
-        help="Length of the steps of march (in a cloud: in h) and of the uniform traversal.")
+        help="Length of the steps of march (in a cloud: in h) and of the uniform traversal. auto: 0.25 h, and 1 cell.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,9 +78,10 @@ class BoundarySettings:
         stage="rays", source="[T §2.5]", when=searches,
         help="A hit where log Σθ is below this is refused: the space Ω of points with enough weight.")
     max_nearest: Length | str = parameter(
-        "length", "none", choices=("none",), low=0, open_low=True, high=1e6, step=0.05, unit="units",
+        "length", "auto", choices=("auto", "none"), low=0, open_low=True, high=1e6, step=0.05, unit="units",
         group="Boundary", label="Distance to the nearest surfel", stage="rays", source="[T §2.5]", when=searches,
-        help="A hit farther than this from its nearest surfel is refused.")
+        help="A hit farther than this from its nearest surfel is refused. auto: 1.5 h in a cloud, so that its holes "
+             "stay open, and no bound in a lattice; none: no bound.")
     max_angle: float | str = parameter(
         "number", "none", choices=("none",), low=0, high=1, step=0.05, group="Boundary", label="Angle bound",
         stage="rays", source="[T 2.23]", when=searches,

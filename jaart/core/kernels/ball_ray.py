@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.call import search_from
-from jaart.core.kernels.guess import meets
+from jaart.core.kernels.guess import GUESS_WIDTH, meets
 from jaart.core.kernels.heap import pop, push
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.log import end_log
@@ -148,6 +148,9 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
         if item < count and balls.stretches == 0 and balls.any_hit == 0:
             size = push(keys, items, size, start.t + start.s, count + ball)
             continue
+        if plan.how.kind == r.CENTRES:
+            for i in range(GUESS_WIDTH):
+                fit[r.FIT_SIZE + i] = balls.guesses[balls.slot[ball], i]
         one = search_from(plan.search, balls.sites, plan.rule, plan.how, plan.bounds, d, start, rows, end.rows, work,
                           fit)
         number += 1

@@ -61,6 +61,8 @@ def polynomial(near: Near, x: Vector, rule: Rule, want: int, work: Array, coeffi
         return no_value(state, off, s, shift)
     write_places(near, x, n, 1.0 / rule.h, work)
     degree = fit(work, near.size, rule.degree, rule.patch, coefficients)
+    if degree < 0:
+        return no_value(r.FEW_NEIGHBOURS, off, s, shift)
     for i in range(near.size):
         work[i] = w[i]
     return Value(state, coefficients[0] * rule.h, n, off, s, shift, _NOTHING, degree)

@@ -17,8 +17,8 @@ from jaart.core.kernels.roots import first_root_above
 from jaart.core.kernels.vectors import dot, frame
 
 _ZERO: Any = np.int64(0)
-#: A row of guesses: state, normal, f, degree, then the polynomial's coefficients.
-STATE, N_X, N_Y, N_Z, HEIGHT, DEGREE, FIT = range(7)
+#: A row of guesses: state, normal, f, degree, off-centre vector, weight, shift, then the polynomial's coefficients.
+STATE, N_X, N_Y, N_Z, HEIGHT, DEGREE, OFF_X, OFF_Y, OFF_Z, WEIGHT, SHIFT, FIT = range(12)
 GUESS_WIDTH = FIT + FIT_SIZE
 
 
@@ -27,8 +27,19 @@ def write_guess(row: Array, v: Value, fit: Array) -> None:
     """Keep the surface at a centre in a row."""
     row[STATE], row[HEIGHT], row[DEGREE] = v.state, v.f, v.degree
     row[N_X], row[N_Y], row[N_Z] = v.n
+    row[OFF_X], row[OFF_Y], row[OFF_Z] = v.off
+    row[WEIGHT], row[SHIFT] = v.weight, v.shift
     for i in range(FIT_SIZE):
         row[FIT + i] = fit[i]
+
+
+@kernel(STRICT)
+def read_guess(row: Array, fit: Array) -> Value:
+    """The surface that a row keeps; its polynomial is written into fit."""
+    for i in range(FIT_SIZE):
+        fit[i] = row[FIT + i]
+    return Value(int(row[STATE]), row[HEIGHT], (row[N_X], row[N_Y], row[N_Z]), (row[OFF_X], row[OFF_Y], row[OFF_Z]),
+                 row[WEIGHT], row[SHIFT], (nan, nan, nan), int(row[DEGREE]))
 
 
 @kernel(STRICT, entry=True)

@@ -165,7 +165,7 @@ def trace_ray(cells: Cells, plan: Plan, o: Vector, d: Vector, rows: Array, work:
         visited += more
         if begin[0] < 0:
             break
-        before = before if more == 1 else nan
+        before = before if more == 1 and way.uniform == 0.0 else nan
         start = start_of(cells, axes, cell, begin, o, d, at, leave, plan.how.trust, before, number)
         end, before = search_cell(cells, plan, start, d, rows, end, work, fit)
         number += 1

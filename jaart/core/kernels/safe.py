@@ -1,7 +1,8 @@
 """The guarded search: the first hit on a stretch, never a loop.
 
-Steps of at most 0.8 h with f and its slope; a change of sign is a bracket; so is an extremum between two equal
-signs, where the slopes at both ends point to 0 and the tangents meet beyond it. At a silhouette the iteration of
+Steps of at most 0.8 h (0.2 h for hats, which are no smooth weights) with f and its slope; a change of sign is a
+bracket; so is an extremum between two equal signs, where the slopes at both ends point to 0 and the tangents meet
+beyond it. At a silhouette the iteration of
 Adamson & Alexa is Newton's method for t² + c² = 0, which never ends; here it is an extremum that stays on its side.
 """
 
@@ -15,8 +16,9 @@ from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.probe import F_SLOPE, F, Look, look, opposite, root_between
 from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, Start, Vector
 from jaart.core.kernels.stretch import fewer, hit_at, jumps, nothing_found, state_of
+from jaart.core.kernels.weigh import fineness
 
-#: Length of the steps, in h.
+#: Length of the steps, in h (of hats, a quarter of it).
 _STEP = 0.8
 #: An extremum is looked for until its bracket is this short, in h.
 _EXTREMUM = 1e-9
@@ -38,7 +40,7 @@ def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
     size = int(surfels_near(sites, start.cell).size)
     if size == 0:
         return nothing_found(r.BACKGROUND, 0, 0, 0, 0, nan)
-    count = max(int(ceil((start.high - start.low) / (_STEP * rule.h))), 1)
+    count = max(int(ceil((start.high - start.low) / (_STEP * fineness(rule.weight, rule.h)))), 1)
     state, looks, evaluations, lowered = r.BACKGROUND, 0, 0, 0
     a = look(F_SLOPE, sites, rule, how, d, start, start.low, rows, row, work, fit)
     looks, evaluations, lowered = 1, a.evaluations, fewer(a, rule)

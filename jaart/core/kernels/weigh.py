@@ -7,7 +7,7 @@ from math import inf, sqrt
 import numpy as np
 
 from jaart.core.kernels import records as r
-from jaart.core.kernels.jit import kernel
+from jaart.core.kernels.jit import EXACT, kernel
 from jaart.core.kernels.near import point
 from jaart.core.kernels.records import Array, Near, Rule, Unsigned, Vector
 from jaart.core.kernels.select import kth_smallest
@@ -20,9 +20,9 @@ FAINT = 1e-60
 WENDLAND_END = 2.653
 
 
-@kernel()
+@kernel(EXACT)
 def square_distance(near: Near, i: Unsigned, x: Vector, per_h: float) -> float:
-    """|p_i - x|²/h²."""
+    """|p_i - x|²/h², the same bits wherever it is asked for."""
     p = point(near, i)
     qx, qy, qz = (p[0] - x[0]) * per_h, (p[1] - x[1]) * per_h, (p[2] - x[2]) * per_h
     return qx * qx + qy * qy + qz * qz
@@ -141,6 +141,12 @@ def weigh(near: Near, x: Vector, rule: Rule, w: Array) -> tuple[float, float]:
     if 0 < rule.k < near.size:
         s = keep_nearest(near, x, 1.0 / rule.h, rule.k, w)
     return s, shift
+
+
+@kernel()
+def fineness(weight: int, h: float) -> float:
+    """A length within which sums with a weight change smoothly: h, for hats, whose support ends suddenly, a quarter."""
+    return h if weight == r.GAUSSIAN or weight == r.WENDLAND else 0.25 * h
 
 
 @kernel()
