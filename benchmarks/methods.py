@@ -43,7 +43,8 @@ METHODS: dict[str, dict[str, Any]] = {
     "cylinder": {"method": "cylinder"},
 }
 MESHES = {"fill_level": {"method": "fill_level"},
-          "fill_level, Gauss filter": {"method": "fill_level", "filter": "gauss"}}
+          "fill_level, Gauss filter": {"method": "fill_level", "filter": "gauss"},
+          "isosurface of |f|, 4 samples a cell": {"method": "isosurface", "subdivide": 4}}
 
 
 def main(names: Iterable[str] = ()) -> None:

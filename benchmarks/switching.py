@@ -1,6 +1,6 @@
-"""What it costs to switch an option in a warm program: the first picture with it, against the next one.
+"""What it costs to switch an option in a program that is warm: its kernels are loaded from disk.
 
-Each option is switched in a process of its own whose machine code is on disk; loading it is all that is left to do.
+Each option is switched in a process of its own; the kernels were compiled by the run before the one that counts.
 """
 
 from __future__ import annotations

@@ -151,7 +151,7 @@ def render(
     from jaart.core.quality import quality
     from jaart.core.render import render as trace_rays
 
-    report.say_compiling()
+    report.say_compiling(loaded, chosen)
     with interruptible() as cancel:
         with report.progress_bar() as progress:
             found = trace_rays(loaded, chosen, view, shape, rays=listed, threads=threads, progress=progress,
@@ -196,7 +196,7 @@ def trace(
         view = typed.camera(camera or [], loaded, chosen, shape)
         ray, up = typed.pixel_ray(view, shape, at), view.up or up
     assert ray is not None
-    report.say_compiling()
+    report.say_compiling(loaded, chosen)
     followed = follow(loaded, chosen, *ray, pixel=at)
     report.say_notes(loaded, chosen)
     files.write_trace(followed, output, up, values_of(loaded, chosen).level)
@@ -222,7 +222,7 @@ def statistics(
     from jaart.core.quality import quality
     from jaart.core.render import render as trace_rays
 
-    report.say_compiling()
+    report.say_compiling(loaded, chosen)
     with interruptible() as cancel, report.progress_bar() as progress:
         found = trace_rays(loaded, chosen, view, shape, threads=threads, progress=progress, cancel=cancel)
     errors = quality(found, loaded)
@@ -241,7 +241,7 @@ def isosurface(
     chosen = meshes.asked(energy, level, subdivide, preset, set_ or [])
     loaded, chosen = files.open_scene(scene, frame, chosen, preset, set_, meshes.IMPLIED)
     along = meshes.direction_of(energy, direction, camera or [], loaded, chosen)
-    report.say_compiling()
+    report.say_compiling(loaded, chosen)
     with interruptible() as cancel, report.progress_bar("layer") as progress:
         meshes.write(loaded, chosen, energy, along, output, cancel, progress)
 
@@ -252,8 +252,8 @@ def preview(scene: SceneName,
     """Render a scene's picture, and the plots of the ray through its middle, to files in a folder."""
     from jaart.cli_preview import write_preview
 
-    report.say_compiling()
     loaded = files.load(scene, None)
+    report.say_compiling(loaded, typed.settings(DEFAULT_PRESET, []))
     output.mkdir(parents=True, exist_ok=True)
     for path in write_preview(loaded, output):
         print(f"wrote {path}")

@@ -160,12 +160,13 @@ def trace_line(trace: Trace) -> str:
            f"{passed}"
 
 
-def say_compiling() -> None:
-    """Say on stderr, the first time on a machine, why nothing happens for some seconds."""
+def say_compiling(scene: Scene, settings: Settings) -> None:
+    """Say on stderr, the first time that kernels are needed on a machine, why nothing happens for some seconds."""
     from jaart.core.warm import needs_compile
 
-    if needs_compile():
-        print("Compiling the kernels for this machine, once; this takes about ten seconds.", file=sys.stderr)
+    if needs_compile(scene, settings):
+        print("Compiling kernels that are needed for the first time on this machine; this takes some seconds, once.",
+              file=sys.stderr)
 
 
 @contextmanager

@@ -3,10 +3,19 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 from threading import Lock
 from typing import Any
 
 _LOCK = Lock()
+
+
+def compiled(function: Any) -> bool:
+    """Whether a kernel is loaded, or its machine code lies in the user's cache."""
+    if function.overloads:
+        return True
+    kept = function._cache
+    return any(Path(kept.cache_path).glob(f"{kept._impl.filename_base}*.nbi"))
 
 
 @cache
@@ -14,8 +23,8 @@ def address_of(function: Any, signature: Any) -> int:
     """Where the machine code of a kernel begins, compiled or loaded for exactly these types."""
     with _LOCK:
         function.compile(signature.args)
-        compiled = function.overloads[signature.args]
-        assert compiled.signature.return_type == signature.return_type, (function, compiled.signature)
-        address: int = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+        made = function.overloads[signature.args]
+        assert made.signature.return_type == signature.return_type, (function, made.signature)
+        address: int = made.library.get_pointer_to_function(made.fndesc.llvm_func_name)
         return address
 

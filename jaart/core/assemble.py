@@ -82,6 +82,12 @@ def evaluator(values: Chosen) -> Any:
     return tangent.tangent_surfel if values.normal == "surfel" else tangent.tangent_covariance
 
 
+def kernels_of(values: Chosen) -> tuple[Any, ...]:
+    """The kernels that are called by address with these values."""
+    fitted_ones = (approach.approach,) if values.method in FITTED else ()
+    return evaluator(values), searcher(values), accept.accept, *fitted_ones
+
+
 #: The kernel of each search.
 SEARCHERS: dict[str, Any] = {
     "iterate": stepping.step_search, "secant": stepping.step_search, "newton": stepping.step_search,

@@ -81,7 +81,7 @@ def first_hits(tracer: Tracer, origin: Array, direction: Array, inside: Mask) ->
         t[todo], normal[todo] = ahead[todo] + found.t, found.normal
         own = _own_sheet(tracer, found, t[todo], inside[todo])
         todo = todo[own]
-        ahead[todo] = t[todo] + _ON * tracer.near
+        ahead[todo] = np.maximum(t[todo], ahead[todo]) + _ON * tracer.near  # a mean of points may lie behind
     return t, normal
 
 

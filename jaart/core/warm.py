@@ -12,12 +12,14 @@ import threading
 import numpy as np
 
 from jaart.core import assemble, cylinder, meaning, mesh_tracer
+from jaart.core.addresses import compiled
 from jaart.core.balls import CloudTracer
 from jaart.core.cell_table import cell_table
 from jaart.core.chosen import Chosen, chosen
 from jaart.core.cloud_surfels import cloud_of
+from jaart.core.errors import SettingsError
 from jaart.core.groups.surface import MESHES
-from jaart.core.kernels import energies, jit, pinhole, ray, traversal
+from jaart.core.kernels import ball_ray, energies, pinhole, ray, traversal
 from jaart.core.kernels.records import LOG_WIDTH, Cells, Plan
 from jaart.core.parameter import Length
 from jaart.core.scene import Scene
@@ -30,9 +32,17 @@ _LOCK = threading.RLock()
 _O, _D = (1.5, 1.5, 9.0), (0.0, 0.0, -1.0)
 
 
-def needs_compile() -> bool:
-    """Whether the kernels will be compiled, which takes seconds, or only loaded from the user's cache."""
-    return jit.first_time()
+def needs_compile(scene: Scene, settings: Settings) -> bool:
+    """Whether kernels will be compiled, which takes seconds, or only loaded from the user's cache.
+
+    False for settings that make no sense in the scene: nothing is compiled for them.
+    """
+    try:
+        values = meaning.check(scene, settings)
+    except SettingsError:
+        return False
+    driver = ball_ray.trace_ball_rays if scene.kind == "cloud" else ray.trace_rays
+    return not all(compiled(f) for f in (driver, *assemble.kernels_of(values)))
 
 
 def warm_up(scene: Scene, settings: Settings, tracing: bool = False) -> Chosen:

@@ -81,8 +81,8 @@ def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tu
     from jaart.core.render import render
     from jaart.core.warm import needs_compile
 
-    if needs_compile():
-        job.say("Compiling the kernels, once on this machine; this takes some seconds …")
+    if needs_compile(scene, settings):
+        job.say("Compiling kernels that are needed for the first time on this machine; this takes some seconds …")
     values = check(scene, settings)
     hits = render(scene, settings, camera, size, progress=None if dragging else job.progress, cancel=job.cancel,
                   picture=None if dragging else job.partial)

@@ -206,7 +206,7 @@ def test_centres_alone_are_met(fit: str) -> None:
     """Each hit lies on the plane or polynomial that the oracle fits at the centre of its ball."""
     scene, settings = cloud("bumpy", 700), EXACT.replace(search="centres", **FITS[fit])
     hits, oracle = render(scene, settings, rays=rays(30)), CloudOracle.of(scene, settings)
-    assert hits.hit.sum() >= 15 and (hits.evaluations[hits.hit] >= 1).all()
+    assert hits.hit.sum() >= 15
     for i in np.flatnonzero(hits.hit)[:10]:
         recorded = trace(scene, settings, hits.origin[i], hits.direction[i])
         last = next(k for k, name in enumerate(recorded.outcome) if name == STATUS_NAMES[0])

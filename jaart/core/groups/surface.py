@@ -40,7 +40,8 @@ class SurfaceSettings:
         group="Surface", label="Surface", stage="rays", source="[T 2.15–2.24; A 5, 10]",
         help="tangent: zero set of f(x) = <n(x), a(x) - x>. polynomial: a polynomial fitted above the plane at x. "
              "projection: the point-set surface of Alexa et al. off_centre: minimum of |x - a(x)|. mahalanobis: "
-             "minimum of the mean distance to the surfels' planes. angle: minimum of |<c/|c|, n>|. cylinder: Schaufler "
+             "minimum of the mean distance to the surfels' planes. angle: minimum of |<c/|c|, n>|, "
+             "which leaves many holes. cylinder: Schaufler "
              "& Jensen's mean of the points around the ray. isosurface: an energy's level as a mesh. fill_level: "
              "marching cubes of the lattice itself.")
     degree: int = parameter(
@@ -105,7 +106,7 @@ class WeightSettings:
         "length", "auto", choices=("auto",), low=0, open_low=True, high=1e6, step=0.25, unit="units",
         group="Weight and area", label="Radius", stage="neighbours", source="[T §3.1.3]",
         when=lambda s: evaluates(s) and s.neighbourhood in ("auto", "cell_ball", "ball"),
-        help="Radius of the neighbourhood, best 2.5 h or more: what it cuts off makes f jump at cell faces, and "
+        help="Radius of the neighbourhood, best 3 h or more: what it cuts off makes f jump at cell faces, and "
              "holes open. auto: where the weight has fallen to nothing that counts.")
     k: int = parameter(
         "integer", 12, low=1, high=1000, step=1, group="Weight and area", label="Nearest k", stage="neighbours",

@@ -119,9 +119,10 @@ def hit_of(cells: Cells, cell: Cell, near: Near, t: float, x: Vector, d: Vector,
     """
     m = mean_of(near, x, d, radius)
     size = sqrt(dot(m.n, m.n))
-    if not size > _CANCELLED:
-        written = log_mean(rows, cells, cell, t, x, m, _NOTHING, r.UNDEFINED_NORMAL)
-        return RayEnd(r.UNDEFINED_NORMAL, nan, _NOTHING, _NOTHING, nan, nan, 1, 1, m.many, 0, 0, nan, written, -1)
+    if not size > _CANCELLED or t + m.ahead <= 0.0:  # the mean of what lies ahead may lie behind
+        state = r.LEFT_TRUST if size > _CANCELLED else r.UNDEFINED_NORMAL
+        written = log_mean(rows, cells, cell, t, x, m, _NOTHING, state)
+        return RayEnd(state, nan, _NOTHING, _NOTHING, nan, nan, 1, 1, m.many, 0, 0, nan, written, -1)
     n, hit = scaled(m.n, 1.0 / size), along(x, d, m.ahead)
     place = in_scene(cells.sites, cell, hit)
     written = log_mean(rows, cells, cell, t, x, m, n, r.CONVERGED)
