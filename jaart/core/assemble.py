@@ -13,6 +13,7 @@ from jaart.core.kernels import (
     approach,
     call,
     centres,
+    cylinder_search,
     fitted,
     march,
     minimise,
@@ -97,5 +98,7 @@ SEARCHERS: dict[str, Any] = {
 
 
 def searcher(values: Chosen) -> Any:
-    """The kernel that searches."""
+    """The kernel that searches; a cylinder's is for clouds alone, lattices have a driver of their own."""
+    if values.method == "cylinder":
+        return cylinder_search.cylinder_search
     return SEARCHERS[values.search]

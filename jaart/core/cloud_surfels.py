@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,11 +51,21 @@ def points_of(scene: Scene, settings: Settings, values: Chosen) -> Points:
 def cloud_of(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
     """Points in a grid, balls that cover them and a tree over these, for a neighbourhood."""
     points, found = cloud.local_points(scene), points_of(scene, settings, values)
+    if values.method == "cylinder":
+        return _discs(scene, points, found.normal, values.h)
     kept = cloud.cover(scene, settings.ball_k)
     centres, radii = np.array(points[kept]), np.array(cloud.ball_radii(scene, settings.ball_k)[kept])
     reach = radii + values.radius if values.neighbourhood == "ball" else _reach(scene, settings.k, kept, radii)
     return Cloud(_grid(points, found.normal, float(np.median(reach))), centres, radii, reach,
                  ball_tree(centres, radii), cloud.offset(scene))
+
+
+def _discs(scene: Scene, points: Array, normals: Array, h: float) -> Cloud:
+    """A ball of radius h around each point, that of its disc: the cylinder about a hit reaches √2 h farther."""
+    radii = np.full(len(points), h)
+    reach = radii * (1 + math.sqrt(2)) * (1 + 1e-12)
+    return Cloud(_grid(points, normals, float(reach[0])), np.array(points), radii, reach, ball_tree(points, radii),
+                 cloud.offset(scene))
 
 
 def _reach(scene: Scene, k: int, kept: NDArray[np.int64], radii: Array) -> Array:

@@ -26,8 +26,6 @@ REFUSED: tuple[Refusal, ...] = (
      "a cloud has no cells; expected ball or knn"),
     ("method", lambda scene, s, c: scene.kind == "cloud" and c.method in MESHES,
      "needs a lattice; a cloud has no cells to make a mesh in"),
-    ("method", lambda scene, s, c: scene.kind == "cloud" and c.method == "cylinder",
-     "needs a lattice, whose cells list the points around a ray"),
     ("search", lambda scene, s, c: c.method in ENERGIES and c.search != "minimise",
      "a least energy is found by minimising; expected minimise or auto"),
     ("search", lambda scene, s, c: c.method in FITTED and c.search == "minimise",

@@ -104,7 +104,7 @@ def tracer(scene: Scene, settings: Settings, values: Chosen, cancel: Event | Non
 
 def balls(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
     """A cloud's points in a grid, and the balls around them."""
-    key = (settings.key("neighbours"), values.neighbourhood, values.radius,
+    key = (settings.key("neighbours"), values.neighbourhood, values.radius, values.h * (values.method == "cylinder"),
            meaning.needs_normals(scene, settings, values))
     return scene.once("balls", key, lambda: cloud_of(scene, settings, values))
 
@@ -112,7 +112,7 @@ def balls(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
 def cloud_tracer(scene: Scene, settings: Settings, values: Chosen) -> CloudTracer:
     """A cloud's balls, with what earlier rays of the same settings asked for."""
     plan, made = plan_of(scene, settings, values), balls(scene, settings, values)
-    stretches = values.search in STRETCHES
+    stretches = values.search in STRETCHES or values.method == "cylinder"
 
     return scene.once("cloud_tracer", (id(made), plan), lambda: CloudTracer(made, plan, stretches, not stretches))
 

@@ -7,7 +7,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from jaart.core import extents, prepare
 from jaart.core.balls import CloudTracer
-from jaart.core.cylinder import CylinderTracer
 from jaart.core.errors import RayError
 from jaart.core.kernels import cylinder, energies
 from jaart.core.kernels import records as r
@@ -96,8 +95,8 @@ def _neighbours(ready: Prepared, rows: Array, d: Array) -> tuple[tuple[NDArray[n
         first, last = sites.first[number], sites.first[number + 1]
         x, w = row[r.X:r.Z + 1] - (sites.centres[number] if cloud else place + 0.5), np.empty(2 * (last - first))
         cell, at = tuple(place.tolist()), tuple(x.tolist())
-        if isinstance(ready.tracer, CylinderTracer):
-            cylinder.write_shares(sites, cell, at, tuple(d.tolist()), ready.tracer.radius, w)
+        if ready.values.method == "cylinder":
+            cylinder.write_shares(sites, cell, at, tuple(d.tolist()), ready.values.h, w)
         else:
             energies.write_weights(sites, cell, at, rule, w)
         w = w[:last - first]

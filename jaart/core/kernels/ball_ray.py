@@ -127,7 +127,7 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
     inverse = (1.0 / d[0], 1.0 / d[1], 1.0 / d[2])
     count, room = balls.centres.shape[0], keys.shape[0] - _LEAF_ROOM
     end, best, visited, number = no_hit(r.BACKGROUND), no_hit(r.BACKGROUND), 0, 0
-    found, limit, slack = False, inf, _SAME_SHEET * plan.rule.h
+    found, limit, least, slack = False, inf, inf, _SAME_SHEET * plan.rule.h
     enter, leave = span(balls.tree.low, balls.tree.high, 0, o, inverse)
     size = push(keys, items, 0, -2.0, -1) if enter <= leave and leave > 0.0 else 0
     while size > 0 and keys[0] < limit:
@@ -157,8 +157,9 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
         if one.steps > 0 or one.state != r.BACKGROUND:
             end = added(end, one)
             end_log(rows, end.rows if one.steps > 0 else 0, one.state)
-        if has_hit(one.state) and (not found or one.t < best.t):
-            found, best, limit = True, end, one.t if balls.stretches == 1 else one.t - slack
+        order = one.t if one.f != one.f else one.f  # of a mean of points what it was placed by
+        if has_hit(one.state) and (not found or order < least):
+            found, best, least, limit = True, end, order, order if balls.stretches == 1 else order - slack
             if balls.any_hit == 1:
                 break
     return visiting(end, visited) if not found else finished(best, end, visited)

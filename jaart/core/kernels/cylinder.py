@@ -27,7 +27,7 @@ from jaart.core.kernels.vectors import along, dot, length, scaled
 #: A disc is edge-on when |<d, n>| is not above this.
 _PARALLEL = 1e-12
 #: |Σwn| not above this share of Σw leaves no normal: opposite surfels cancel.
-_CANCELLED = 1e-8
+CANCELLED = 1e-8
 _NOTHING = (nan, nan, nan)
 
 
@@ -119,8 +119,8 @@ def hit_of(cells: Cells, cell: Cell, near: Near, t: float, x: Vector, d: Vector,
     """
     m = mean_of(near, x, d, radius)
     size = sqrt(dot(m.n, m.n))
-    if not size > _CANCELLED or t + m.ahead <= 0.0:  # the mean of what lies ahead may lie behind
-        state = r.LEFT_TRUST if size > _CANCELLED else r.UNDEFINED_NORMAL
+    if not size > CANCELLED or t + m.ahead <= 0.0:  # the mean of what lies ahead may lie behind
+        state = r.LEFT_TRUST if size > CANCELLED else r.UNDEFINED_NORMAL
         written = log_mean(rows, cells, cell, t, x, m, _NOTHING, state)
         return RayEnd(state, nan, _NOTHING, _NOTHING, nan, nan, 1, 1, m.many, 0, 0, nan, written, -1)
     n, hit = scaled(m.n, 1.0 / size), along(x, d, m.ahead)

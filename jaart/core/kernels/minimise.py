@@ -39,7 +39,7 @@ def minimise_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Ve
         s = start.low + (start.high - start.low) * (i / count)
         b = look(E_SLOPE, sites, rule, how, d, start, s, rows, row + looks, work, fit)
         looks, evaluations, best, found = looks + 1, evaluations + b.evaluations, a, False
-        if a.q < 0.0 and b.q > 0.0:
+        if a.q < 0.0 and b.q >= 0.0:
             best, more, spent = root_between(E_SLOPE, sites, rule, how, d, start, a, b, how.arrived, nan, rows,
                                              row + looks, work, fit)
             looks, evaluations, found = looks + more, evaluations + spent, True
