@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from jaart.core.errors import SettingsError
 from jaart.core.io import load
 from jaart.core.meaning import check
 from jaart.core.scene import Scene
@@ -22,10 +21,6 @@ def test_every_preset_makes_sense_in_every_scene_and_with_every_surface(name: st
                                                                          method: str | None) -> None:
     typed = [] if method is None else [f"method={method}"]
     fitting, _ = suited(scene, parse(typed, preset(name)), ["method"][:len(typed)])
-    if method == "cylinder" and scene is CLOUD:
-        with pytest.raises(SettingsError, match="method = cylinder"):
-            check(scene, fitting)
-        return
     check(scene, fitting)
     assert method in (None, fitting.method)
     assert suited(scene, fitting, ["method"][:len(typed)]) == (fitting, ())

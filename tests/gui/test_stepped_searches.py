@@ -84,7 +84,6 @@ def test_a_ray_without_a_step_is_explained(qtbot, window, values):
     assert window.docks["Steps"].panel.position.text() == "step 0 / 0"
 
 
-@pytest.mark.parametrize("scene", ["lattice"], indirect=True)
 def test_the_cylinder_takes_one_step(qtbot, window, scene):
     trace = show(qtbot, window, method="cylinder")
     assert trace.steps >= 1

@@ -22,7 +22,7 @@ EXACT: set[str] = set()
 
 
 #: Whether every kernel can be called from outside: tests look into them.
-_CALLABLE = "JAART_CALL_KERNELS" in os.environ
+CALLABLE = "JAART_CALL_KERNELS" in os.environ
 
 
 def _sources_hash() -> str:
@@ -30,7 +30,7 @@ def _sources_hash() -> str:
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(path.read_bytes())
-    digest.update(f"{_CALLABLE} {numba.__version__} {sys.version_info[:2]}".encode())
+    digest.update(f"{CALLABLE} {numba.__version__} {sys.version_info[:2]}".encode())
     return digest.hexdigest()[:16]
 
 
@@ -59,11 +59,6 @@ def kept() -> bool:
     return _CACHED
 
 
-def first_time() -> bool:
-    """Whether the kernels are still to be compiled."""
-    return not (_CACHED and any(CACHE.rglob("*.nbi")))
-
-
 def kernel(flags: set[str] = VECTOR, inline: bool = False, entry: bool = False,
            allocates: bool = False) -> Callable[[F], F]:
     """Compile a function to machine code that releases the interpreter's lock.
@@ -81,7 +76,7 @@ def kernel(flags: set[str] = VECTOR, inline: bool = False, entry: bool = False,
         try:
             return numba.njit(function, nogil=True, cache=_CACHED, fastmath=flags, error_model="numpy",
                               forceinline=inline, no_cfunc_wrapper=True, _nrt=allocates,
-                              no_cpython_wrapper=not (entry or _CALLABLE))
+                              no_cpython_wrapper=not (entry or CALLABLE))
         finally:
             numba.config.CACHE_DIR = before
 
