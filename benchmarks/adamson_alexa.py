@@ -61,7 +61,7 @@ def table(scene: jaart.Scene, settings: jaart.Settings, camera: jaart.Camera, di
         off = np.abs(hits.t - exact_t)[exact].mean() / spacing
         angle = np.degrees(np.arccos(np.minimum(np.abs((hits.normal * exact_n)[exact].sum(axis=1)), 1))).mean()
         given_up = hits.evaluations[hit].sum() - hits.iterations[hit].sum()
-        print(f"{tolerance:9.0e} {TABLE_1.get(tolerance, float('nan')):5.2f} {hits.iterations[hit].mean():6.3f} "
+        print(f"{tolerance:9.0e} {TABLE_1.get(tolerance, '-'):>5} {hits.iterations[hit].mean():6.3f} "
               f"{(hits.evaluations.sum() + fits) / hit.sum():9.3f} {fits:6} {hits.evaluations[~hit].sum():7} "
               f"{given_up:8} {hit.sum():6} {np.median(error):10.1e} h {error.max():8.1e} {off:8.5f}s {angle:6.3f}°")
 

@@ -40,8 +40,7 @@ class SurfaceSettings:
         group="Surface", label="Surface", stage="rays", source="[T 2.15–2.24; A 5, 10]",
         help="tangent: zero set of f(x) = <n(x), a(x) - x>. polynomial: a polynomial fitted above the plane at x. "
              "projection: the point-set surface of Alexa et al. off_centre: minimum of |x - a(x)|. mahalanobis: "
-             "minimum of the mean distance to the surfels' planes. angle: minimum of |<c/|c|, n>|, "
-             "which leaves many holes. cylinder: Schaufler "
+             "minimum of the mean distance to the surfels' planes. angle: minimum of |<c/|c|, n>|. cylinder: Schaufler "
              "& Jensen's mean of the points around the ray. isosurface: an energy's level as a mesh. fill_level: "
              "marching cubes of the lattice itself.")
     degree: int = parameter(
