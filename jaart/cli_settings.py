@@ -6,6 +6,7 @@ import difflib
 import textwrap
 from collections.abc import Iterable
 
+from jaart.cli_options import DEFAULT_PRESET
 from jaart.core.errors import SettingsError
 from jaart.core.parameter import KINDS, Parameter
 from jaart.core.settings import PARAMETERS, PRESETS, Settings
@@ -45,7 +46,9 @@ def _group(title: str, held: list[Parameter]) -> str:
 def _parameter(about: Parameter) -> str:
     """Name and default, what may be typed, and what it means."""
     unit = f", in {'cells or cloud units' if about.unit == 'units' else about.unit}" if about.unit else ""
-    lines = [f"default {shown(getattr(Settings(), about.name))}; {about.expected}{unit}"]
+    first = PRESETS[DEFAULT_PRESET].get(about.name)
+    instead = "" if first is None else f" ({shown(first)} in the preset {DEFAULT_PRESET})"
+    lines = [f"default {shown(getattr(Settings(), about.name))}{instead}; {about.expected}{unit}"]
     if about.scenes != KINDS:
         lines.append(f"for a {' or a '.join(about.scenes)} only")
     source = about.source.replace(" ", "\N{NO-BREAK SPACE}")  # it is not torn apart
