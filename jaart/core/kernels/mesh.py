@@ -13,15 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
-from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.jit import EXACT, STRICT, kernel
 from jaart.core.kernels.ray import is_bad, no_hit, write_end
 from jaart.core.kernels.records import Array, Out, RayEnd, Vector
 from jaart.core.kernels.tree import DEEPEST, Tree, span
 from jaart.core.kernels.unowned import unowned
 from jaart.core.kernels.vectors import along, length, scaled
-
-#: A fused a·b - c·d is not the negative of c·d - a·b.
-EXACT: set[str] = set()
 
 Ints = NDArray[np.int64]
 
@@ -64,6 +61,7 @@ class Meeting(NamedTuple):
     w: float
 
 
+# exact, for a fused a·b - c·d is not the negative of c·d - a·b
 @kernel(EXACT)
 def shear_of(d: Vector) -> Shear:
     """The shear of a ray's direction."""
