@@ -12,15 +12,19 @@ from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, 
 from jaart.core.kernels.stretch import fewer, hit_at, jumps, nothing_found, state_of
 from jaart.core.kernels.vectors import dot
 
-#: What may be left of f where a straight line is 0, in h: more, and more than half of what was, is no root.
+#: What may be left of f where a straight line is 0, in h.
 _LEFT = 0.1
 
 @kernel(STRICT)
-def turned(n_before: Vector, f_before: float, after: Look, f: float, h: float) -> bool:
-    """Whether f jumps between two looks as it does where the normal turns; f: where a straight line would be 0."""
+def turned(n_before: Vector, f_before: float, after: Look, f: float, gap: float, h: float) -> bool:
+    """Whether f jumps between two looks as it does where the normal turns.
+
+    f: where a straight line would be 0; gap: between the looks. f changes about as fast as the distance, so that
+    more than half the gap is no rest of a root.
+    """
     if dot(n_before, after.value.n) < 0.0 and abs(f) > min(abs(f_before), abs(after.f)):
         return True
-    return abs(f) > _LEFT * h and abs(f) > 0.5 * max(abs(f_before), abs(after.f))
+    return abs(f) > max(_LEFT * h, 0.5 * gap)
 
 
 @kernel(STRICT)
@@ -48,7 +52,7 @@ def march_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vecto
             at = s if i == 0 else s_before + (s - s_before) * (f_before / (f_before - seen.f))
             hit = look(F, sites, rule, how, d, start, at, rows, row + looks, work, fit)
             looks, lowered = looks + 1, lowered + fewer(hit, rule)
-            if turned(n_before, f_before, seen, hit.f, rule.h):
+            if turned(n_before, f_before, seen, hit.f, s - s_before, rule.h):
                 s_before, f_before, n_before = s, seen.f, seen.value.n
                 continue
             end = hit_at(r.CONVERGED, sites, rule, how, bounds, d, start, at, hit.value, hit.f, looks, looks + refused,
