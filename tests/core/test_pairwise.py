@@ -155,7 +155,7 @@ def satisfied(oracle: Oracle, hits: Hits, i: int, scene: Scene) -> bool:
     known = 1e-3 if v.method == "projection" and v.neighbourhood in ("ball", "knn") else 1e-6  # of the foot, or of x
     if search != "march":
         return abs(f) < known
-    return abs(abs(f) - hits.energy[i]) < known and abs(f) < 0.13 * v.h  # half a step of 0.25 h
+    return abs(abs(f) - hits.energy[i]) < known and abs(f) < 0.125 * min(v.h, 0.8)
 
 
 @pytest.mark.parametrize(("scene", "one"), [(scene, one) for scene in SCENES for one in COVERS[scene]],

@@ -75,9 +75,9 @@ def test_a_loose_bound_refuses_nothing() -> None:
 @pytest.mark.parametrize("search", ["iterate", "secant", "safe"])
 def test_uniform_traversal_starts_by_even_steps(search: str) -> None:
     settings = TIGHT.replace(search=search, traversal="uniform", step=1.5)
-    exact = render(scene_of("standard"), TIGHT.replace(search=search), rays=rays("standard", 30))
-    hits, oracle = rendered("standard", settings, 30)
-    assert 8 < hits.hit.sum() <= exact.hit.sum() and hits.cells.sum() < 0.9 * exact.cells.sum()
+    exact = render(scene_of("standard"), TIGHT.replace(search=search), rays=rays("standard", 45))
+    hits, oracle = rendered("standard", settings, 45)
+    assert 10 < hits.hit.sum() <= exact.hit.sum() and hits.cells.sum() < 0.9 * exact.cells.sum()
     for i in range(0, len(hits), 3):
         recorded = traced("standard", settings, hits, i)
         parts = stretches(oracle, hits.origin[i].tolist(), hits.direction[i].tolist())
