@@ -10,17 +10,18 @@ from jaart.core.shapes import Sphere
 
 RADII = (2.0, 2.5, 3.0, 4.0, 5.0, 6.0)
 RAYS = 300
+H = 0.8
 
 
 def main() -> None:
     scene = Scene("sphere", model=Model((Sphere((0.5, 0.5, 0.5), 0.25),), 16))
     towards = np.random.default_rng(7).normal(size=(RAYS, 3))
     towards /= np.linalg.norm(towards, axis=1, keepdims=True)
-    print(f"sphere of radius 4 cells, h 0.8: jump of f at cell faces near the hit, {RAYS} rays to its centre")
+    print(f"sphere of radius 4 cells, h {H}: jump of f at cell faces near the hit, {RAYS} rays to its centre")
     print(f"{'radius':>6} {'largest [h]':>12} {'median [h]':>12}")
     for radius in RADII:
-        settings = jaart.Settings(radius=radius)
-        found = np.concatenate([jumps(scene, settings, d) for d in towards]) / settings.h.value
+        settings = jaart.preset("thesis").replace(radius=radius, h=H)
+        found = np.concatenate([jumps(scene, settings, d) for d in towards]) / H
         print(f"{radius:6} {found.max():12.1e} {np.median(found):12.1e}")
 
 
