@@ -13,6 +13,7 @@ from jaart import cli_arguments as typed
 from jaart import cli_files as files
 from jaart import cli_isosurface as meshes
 from jaart import cli_report as report
+from jaart import cli_study as studies
 from jaart.cli_interrupt import interruptible
 from jaart.cli_options import (
     DEFAULT_PRESET,
@@ -244,6 +245,17 @@ def isosurface(
     report.say_compiling(loaded, chosen)
     with interruptible() as cancel, report.progress_bar("layer") as progress:
         meshes.write(loaded, chosen, energy, along, output, cancel, progress)
+
+
+@app.command()
+def study(name: studies.StudyName, output: studies.Folder, quick: studies.Quick = False) -> int:
+    """Let the program examine itself.
+
+    stability: every stiff and extreme case, with what was expected and what came of it.
+    """
+    studies.check(name, output)
+    with interruptible() as cancel, report.progress_bar("case") as progress:
+        return studies.run_stability(output, quick, cancel, progress)
 
 
 @app.command(hidden=True)

@@ -1,0 +1,1 @@
+"""Studies: what the program says about itself, run by the program itself."""

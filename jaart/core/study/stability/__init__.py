@@ -1,0 +1,1 @@
+"""The stiff and extreme cases, each run through the program as a person would."""
