@@ -110,7 +110,9 @@ def hits_line(hits: Hits, scene: Scene, quality: Quality | None = None) -> str:
              f"prepared in {1000 * hits.prep_s:.0f} ms, traced in {1000 * hits.ray_s:.0f} ms",
              ", ".join(f"{count} {name}" for name, count in hits.counts().items()) or "no rays"]
     lines += _taken(hits, scene)
-    if quality is not None and quality.relevant:
+    if quality is not None and not quality.relevant:
+        lines.append("against the exact surface: no relevant rays, all show background and should")
+    elif quality is not None:
         unit = "spacings" if scene.kind == "cloud" else "cells"
         lines.append(f"against the exact surface: delta {quality.delta:.4g}, delta_p {quality.delta_p:.4g} {unit}, "
                      f"delta_n {quality.delta_n:.4g}")
@@ -133,14 +135,10 @@ def _taken(hits: Hits, scene: Scene) -> list[str]:
 
 
 def say_notes(scene: Scene, settings: Settings) -> None:
-    """Say on stderr what a person should know of a cloud's normals and balls."""
-    from jaart.core import cloud
-    from jaart.core.cloud_surfels import Points
-    from jaart.core.prepare import prepared
+    """Say on stderr what a person should know of the scene with these settings."""
+    from jaart.core.notes import notes
 
-    if scene.kind == "cloud":
-        points = prepared(scene, settings).surfels
-        note((*(points.notes if isinstance(points, Points) else ()), *cloud.notes(scene, settings.ball_k)))
+    note(notes(scene, settings))
 
 
 def note(texts: Iterable[str]) -> None:

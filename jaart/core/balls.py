@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from jaart.core.kernels import ball_ray, gather, guess
 from jaart.core.kernels.ball_ray import NOTHING, ROOM, Balls
 from jaart.core.kernels.gather import Grid
+from jaart.core.kernels.leaving import ROUNDING
 from jaart.core.kernels.records import Out, Plan, Sites
 from jaart.core.kernels.tree import Tree
 from jaart.core.scene import Array
@@ -64,7 +65,8 @@ class CloudTracer:
     def __post_init__(self) -> None:
         nothing = Sites((0, 0, 0), np.empty((0, 3)), np.zeros(1, np.int64), np.empty(0, np.int32), np.empty(0))
         self._balls = Balls(nothing, np.full(len(self.cloud.radii), -1), 0, self.cloud.centres,
-                            self.cloud.radii, self.cloud.tree, np.empty((0, guess.GUESS_WIDTH)), int(self.stretches), 0)
+                            self.cloud.radii, self.cloud.tree, np.empty((0, guess.GUESS_WIDTH)), int(self.stretches), 0,
+                            ROUNDING * float(np.abs(self.cloud.offset).max()))
 
     @property
     def sites(self) -> Sites:

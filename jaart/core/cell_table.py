@@ -32,7 +32,7 @@ def cell_table(found: Surfels, shape: Cell, values: Chosen, k: int, cancel: Even
     empty = np.full(shape, 255, np.uint8)
     empty[tuple(found.cells.T)] = 0
     table.fill_empty(empty)
-    if values.neighbourhood.endswith("knn"):
+    if values.neighbourhood.endswith("knn") and len(found):
         sites = _nearest(found, empty, k, exact=values.neighbourhood == "knn")
     else:
         more = HALF_DIAGONAL if values.neighbourhood == "ball" else 0.0

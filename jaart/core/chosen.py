@@ -22,6 +22,10 @@ SMALLEST_H = 1e-100
 LATTICE_H = 0.8
 #: Radius of a lattice's neighbourhood where nobody says, in h: 2.5 cells at h = 0.8, where a polynomial's errors end.
 LATTICE_RADIUS = 3.125
+#: With a finer tolerance, in h, the radius of a lattice's neighbourhood grows: f jumps by as much where it ends there.
+COARSE = 0.01
+#: Where surfels weigh less than this share of the tolerance, f jumps by no more than the tolerance.
+NEGLIGIBLE = 0.1
 #: Radius of a cloud's neighbourhood where nobody says, in h: farther surfels weigh less than 1e-7.
 CLOUD_RADIUS = 4.0
 #: Off-centre bound where nobody says, in h: at the edge of an even sheet it is 0.56 h, where points are uneven more.
@@ -87,13 +91,14 @@ def chosen(scene: Scene, settings: Settings) -> Chosen:
 def length(scene: Scene, settings: Settings, name: str) -> float:
     """A setting's length in cells or cloud units: a share of the diagonal ("d"), of the spacing ("s"), or as it is.
 
-    Raises SettingsError where that is out of the setting's range.
+    Raises SettingsError where a share comes to no length that the setting may have.
     """
     value: Length = getattr(settings, name)
     if not value.unit:
         return value.value
     resolved = value.resolve(extents.diagonal(scene, settings), extents.spacing(scene) if value.unit == "s" else 1.0)
-    PARAMETERS[name].check(Length(resolved))
+    # a cloud's units are its own, however large it is in them
+    PARAMETERS[name].check(Length(resolved if scene.kind != "cloud" else min(resolved, 1.0)))
     return resolved
 
 
@@ -127,8 +132,17 @@ def _radius(scene: Scene, settings: Settings, neighbourhood: str, h: float) -> f
         return length(scene, settings, "radius")
     ends = {"hat": 1.0, "squared_hat": 1.0, "wendland": WENDLAND_END}
     reach = ends.get(settings.weight, LATTICE_RADIUS if scene.kind != "cloud" else CLOUD_RADIUS) * h
-    exact = settings.weight in ends and neighbourhood == "cell_ball"
-    return reach + HALF_DIAGONAL if exact else reach
+    if settings.weight in ends:
+        return reach + HALF_DIAGONAL if neighbourhood == "cell_ball" else reach
+    return reach if scene.kind == "cloud" else max(reach, _without_jumps(settings, neighbourhood, h))
+
+
+def _without_jumps(settings: Settings, neighbourhood: str, h: float) -> float:
+    """The radius at whose end f jumps by no more than the tolerance; 0 where that is not asked for."""
+    if settings.tolerance >= COARSE or not PARAMETERS["tolerance"].matters(settings):
+        return 0.0
+    reach = h * math.sqrt(-math.log(NEGLIGIBLE * max(settings.tolerance, float(np.finfo(np.float64).eps))))
+    return reach + HALF_DIAGONAL if neighbourhood == "cell_ball" else reach
 
 
 def _search(settings: Settings) -> str:

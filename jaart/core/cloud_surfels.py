@@ -55,9 +55,16 @@ def cloud_of(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
         return _discs(scene, points, found.normal, values.h)
     kept = cloud.cover(scene, settings.ball_k)
     centres, radii = np.array(points[kept]), np.array(cloud.ball_radii(scene, settings.ball_k)[kept])
+    if alone(scene):  # nothing but h says how large a single surfel is
+        radii[:] = values.h
     reach = radii + values.radius if values.neighbourhood == "ball" else _reach(scene, settings.k, kept, radii)
     return Cloud(_grid(points, found.normal, float(np.median(reach))), centres, radii, reach,
                  ball_tree(centres, radii), cloud.offset(scene))
+
+
+def alone(scene: Scene) -> bool:
+    """Whether all points of a cloud lie in one place, so that balls to their neighbours hold nothing."""
+    return cloud.diagonal(scene) == 0.0
 
 
 def _discs(scene: Scene, points: Array, normals: Array, h: float) -> Cloud:

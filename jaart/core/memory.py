@@ -15,8 +15,8 @@ def limit() -> int:
 
 def words(size: float) -> str:
     """A number of bytes for people, such as 1.5 GiB."""
-    for unit in ("bytes", "KiB", "MiB", "GiB", "TiB"):
-        if size < 1024 or unit == "TiB":
+    for unit in ("bytes", "KiB", "MiB", "GiB", "TiB", "PiB"):
+        if size < 1024 or unit == "PiB":
             break
         size /= 1024
     return f"{size:.3g} {unit}"

@@ -44,7 +44,8 @@ class Oriented:
         if self.components > 1:
             notes.append(f"the points fall into {self.components} parts, each oriented by itself")
         if self.undefined:
-            notes.append(f"{self.undefined} normals are undefined: their neighbours lie along a line")
+            many = "normals are" if self.undefined > 1 else "normal is"
+            notes.append(f"{self.undefined} {many} undefined: the neighbours lie along a line or in one place")
         return tuple(notes)
 
 

@@ -11,9 +11,8 @@ from jaart.core.assemble import plan_of
 from jaart.core.balls import Cloud, CloudTracer
 from jaart.core.cell_table import cell_table
 from jaart.core.chosen import Chosen
-from jaart.core.cloud_surfels import Points, cloud_of, points_of
+from jaart.core.cloud_surfels import Points, alone, cloud_of, points_of
 from jaart.core.cylinder import cylinder_tracer
-from jaart.core.errors import FileError
 from jaart.core.extents import extent, raster
 from jaart.core.groups.search import STRETCHES
 from jaart.core.groups.surface import MESHES
@@ -61,20 +60,9 @@ def solids(scene: Scene, settings: Settings) -> tuple[Solid, ...] | None:
 
 
 def surfels(scene: Scene, settings: Settings) -> Surfels:
-    """One surfel for each interface cell [T §3.1]. Raises FileError for a lattice without any."""
-    def make() -> Surfels:
-        made = make_surfels(levels(scene, settings), settings, extents.edges(scene))
-        if not len(made):
-            raise FileError(scene.source, _no_surface(made), "levels")
-        return made
-
-    return scene.once("surfels", settings.key("surfels"), make)
-
-
-def _no_surface(found: Surfels) -> str:
-    if found.without_normal:
-        return f"no surface: {found.without_normal} interface cells, but the level changes at none of them"
-    return "no interface: expected a cell with a level between 0 and 1, or a full cell beside an empty one"
+    """One surfel for each interface cell [T §3.1]; none where a lattice holds no surface, and then its notes say so."""
+    return scene.once("surfels", settings.key("surfels"),
+                      lambda: make_surfels(levels(scene, settings), settings, extents.edges(scene)))
 
 
 def cells(scene: Scene, settings: Settings, values: Chosen, cancel: Event | None = None) -> Cells:
@@ -104,7 +92,8 @@ def tracer(scene: Scene, settings: Settings, values: Chosen, cancel: Event | Non
 
 def balls(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
     """A cloud's points in a grid, and the balls around them."""
-    key = (settings.key("neighbours"), values.neighbourhood, values.radius, values.h * (values.method == "cylinder"),
+    sized = values.method == "cylinder" or alone(scene)
+    key = (settings.key("neighbours"), values.neighbourhood, values.radius, values.h if sized else 0.0,
            meaning.needs_normals(scene, settings, values))
     return scene.once("balls", key, lambda: cloud_of(scene, settings, values))
 

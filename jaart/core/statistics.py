@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,7 +75,10 @@ def statistics(hits: Hits, quality: Quality | None = None) -> Statistics:
 
 
 def table(statistics: Statistics) -> list[Row]:
-    """Rows (statistic, bin, value) for CSV, the header first; bins are end states or whole numbers."""
+    """Rows (statistic, bin, value) for CSV, the header first; bins are end states or whole numbers.
+
+    A value that is not defined, such as a mean or an error of no ray, is an empty text.
+    """
     s = statistics
     rows: list[Row] = [("statistic", "bin", "value"), ("rays", "", s.rays), ("hits", "", s.hits),
                        ("mean iterations", "", s.iterations.mean), ("mean evaluations", "", s.evaluations.mean),
@@ -86,7 +90,8 @@ def table(statistics: Statistics) -> list[Row]:
         histogram: Histogram = getattr(s, name)
         rows += [(name, str(value), int(count))
                  for value, count in zip(histogram.values, histogram.counts, strict=True)]
-    return rows + _errors(s.quality)
+    return [(name, bin, "" if isinstance(value, float) and math.isnan(value) else value)
+            for name, bin, value in rows + _errors(s.quality)]
 
 
 def _errors(quality: Quality | None) -> list[Row]:

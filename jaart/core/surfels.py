@@ -42,6 +42,19 @@ class Surfels:
         """Positions (N, 3) in cells."""
         return self.cells + 0.5 + self.offset
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a person should know of them: that there are none and why, or how many cells gave none."""
+        cells = f"{self.without_normal} interface cell{'' if self.without_normal == 1 else 's'}"
+        if self.without_normal and len(self):
+            return (f"{cells} without a normal left out: the level does not change across them",)
+        if self.without_normal:
+            return (f"0 surfels, so there is no surface: {cells}, but the level changes at none of them",)
+        if not len(self):
+            return ("0 surfels, so there is no surface: no cell has a level between 0 and 1, and no full cell lies "
+                    "beside an empty one",)
+        return ()
+
     def __len__(self) -> int:
         return len(self.cells)
 

@@ -27,13 +27,16 @@ def trace(scene: Scene, settings: Settings, origin: ArrayLike, direction: ArrayL
     """Follow one ray and keep every step; its hit has the same bits as `render` gives it.
 
     origin: (3,) in cells or cloud units; direction: (3,) of any length; pixel: where it was picked, kept for
-    display. Raises RayError for an origin or a direction that is not finite, or a direction of zero length.
+    display. Raises RayError for what is `bad_ray` in a picture: an origin or a direction that is not finite, a
+    direction of zero length, and an origin so far away that it has no precision left.
     """
     o, d = _ray(origin, direction)
     warm_up(scene, settings, tracing=True)
     ready = prepare.prepared(scene, settings)
     end, rows = _logged(ready, o, d)
-    path = _path(ready, o, d, end.status[0] == r.BAD_RAY)
+    if end.status[0] == r.BAD_RAY:
+        raise RayError(f"ray origin {o.tolist()}: too far from the scene to have any precision there")
+    path = _path(ready, o, d)
     near, weights = _neighbours(ready, rows, d)
     rows[:, r.X:r.Z + 1] += ready.tracer.offset
     rows[:, r.AX:r.AZ + 1] += ready.tracer.offset
@@ -74,11 +77,11 @@ def _logged(ready: Prepared, o: Array, d: Array) -> tuple[Out, Array]:
         room = written
 
 
-def _path(ready: Prepared, o: Array, d: Array, bad: bool) -> Path:
+def _path(ready: Prepared, o: Array, d: Array) -> Path:
     if isinstance(ready.tracer, CloudTracer):
-        return cloud_path(ready.tracer, o - ready.tracer.offset, d, bad)
+        return cloud_path(ready.tracer, o - ready.tracer.offset, d)
     assert isinstance(ready.tracer, OnLattice)
-    return lattice_path(ready.tracer.cells.empty, o, d, bad)
+    return lattice_path(ready.tracer.cells.empty, o, d)
 
 
 def _step_places(rows: Array) -> NDArray[np.int32]:

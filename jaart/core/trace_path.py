@@ -45,9 +45,9 @@ class Path:
         return whole(np.column_stack((number, places[:, 1:])))
 
 
-def lattice_path(empty: NDArray[np.uint8], o: Array, d: Array, bad: bool) -> Path:
-    """The cells a ray crosses; energies evenly in each, with both sides of each border. bad: it crosses none."""
-    shape = (0, 0, 0) if bad else (empty.shape[0], empty.shape[1], empty.shape[2])
+def lattice_path(empty: NDArray[np.uint8], o: Array, d: Array) -> Path:
+    """The cells a ray crosses; energies evenly in each, with both sides of each border."""
+    shape = (empty.shape[0], empty.shape[1], empty.shape[2])
     cells, borders = np.empty((sum(shape) + 3, 3), np.int32), np.empty(sum(shape) + 4)
     n = traversal.crossed(o, d, shape, cells, borders)
     cells, borders = whole(cells[:n]), borders[:n + 1] if n else borders[:0]
@@ -57,12 +57,12 @@ def lattice_path(empty: NDArray[np.uint8], o: Array, d: Array, bad: bool) -> Pat
     return Path(cells, frozen(borders), empty[tuple(cells.T)] == 0, frozen(np.empty((0, 4))), ts, places)
 
 
-def cloud_path(tracer: CloudTracer, o: Array, d: Array, bad: bool) -> Path:
+def cloud_path(tracer: CloudTracer, o: Array, d: Array) -> Path:
     """The gathered balls that a ray pierces; energies evenly along them, each with the ball whose centre is nearest.
 
     o, d: in the cloud's local frame.
     """
-    slots, span = pierced(tracer, o, d) if not bad else (np.empty(0, np.int64), np.empty((0, 2)))
+    slots, span = pierced(tracer, o, d)
     centres, radii = tracer.ball(slots)
     balls = np.column_stack((centres + tracer.offset, radii)) if len(slots) else np.empty((0, 4))
     ts, places = np.empty(0), np.empty((0, 3), np.int64)

@@ -64,7 +64,9 @@ def figures(model: SceneModel) -> list[str]:
         return []
     texts = [f"{100 * hits.hit.mean():.1f} % of rays hit", f"{hits.evaluations.mean():.2f} evaluations/ray",
              f"{1000 * hits.ray_s:.0f} ms"]
-    if quality is not None:
+    if quality is not None and not quality.relevant:
+        texts.append("δ: no relevant rays")
+    elif quality is not None:
         texts.append(f"δ {_short(quality.delta)}   δp {_short(quality.delta_p)}   δn {_short(quality.delta_n)}")
     return texts
 

@@ -33,7 +33,7 @@ class Opened:
 class Known:
     """What the settings come to in a scene.
 
-    spacing: the unit "s" of lengths; diagonal: the unit "d"; notes: what a person should know of the points' normals.
+    spacing: the unit "s" of lengths; diagonal: the unit "d"; notes: what a person should know of it.
     """
 
     values: Chosen
@@ -53,7 +53,7 @@ class Made:
 
 def read(source: str | PathLike[str], frame: int | None, settings: Settings, base: Settings,
          before: Scene | None) -> Opened:
-    """A scene and settings for it. Raises FileError for a file that cannot be read or has no surface."""
+    """A scene and settings for it. Raises FileError for a file that cannot be read."""
     from jaart.core import prepare
     from jaart.core.io import load
     from jaart.gui.suit import suited
@@ -90,11 +90,11 @@ def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tu
 
 
 def _known(scene: Scene, settings: Settings, values: Chosen) -> Known:
-    from jaart.core import cloud, extents, prepare
+    from jaart.core import cloud, extents
+    from jaart.core.notes import notes
 
     spacing = cloud.spacing(scene) if scene.kind == "cloud" else 1.0
-    notes = tuple(getattr(prepare.points(scene, settings, values), "notes", ()))
-    return Known(values, spacing, extents.diagonal(scene, settings), notes)
+    return Known(values, spacing, extents.diagonal(scene, settings), notes(scene, settings))
 
 
 def ray(scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int], pixel: tuple[int, int]) -> Trace:

@@ -130,7 +130,9 @@ def _notes(statistics: Statistics) -> list[str]:
     notes = [f"{statistics.neighbours:.1f} surfels an iteration" if statistics.neighbours > 0 else "no iteration",
              f"prepared in {1000 * statistics.prep_s:.0f} ms, rays in {1000 * statistics.ray_s:.0f} ms"]
     q = statistics.quality
-    if q is not None:
+    if q is not None and not q.relevant:
+        notes.append("δ: no relevant rays")
+    elif q is not None:
         notes += ["   ".join(f"{name} = {_error(value)}" for name, value in
                              (("δ", q.delta), ("δ_p", q.delta_p), ("δ_n", q.delta_n))),
                   f"false hits {_number(q.false_hit)}, misses {_number(q.false_miss)}, "

@@ -88,9 +88,6 @@ def test_balls_reach_to_the_kth_neighbour() -> None:
 def test_more_neighbours_than_points() -> None:
     scene = of(POINTS[:4])
     assert np.allclose(cloud.ball_radii(scene, 6), distances(POINTS[:4])[:, 2], rtol=1e-14)
-    assert cloud.notes(scene, 6) == ("ball_k = 6: there are only 3 other points",)
-    assert cloud.notes(scene, 3) == ()
-    assert cloud.notes(of(POINTS[:2]), 2) == ("ball_k = 2: there is only 1 other point",)
 
 
 def test_a_single_point_has_no_spacing() -> None:
@@ -119,6 +116,12 @@ def jittered(count: int) -> np.ndarray:
     return standard_bumps().points_along(directions)
 
 
+def even_square(count: int) -> np.ndarray:
+    """Whose balls have few different radii; without one corner, for k = 6 keeps all balls of a whole one."""
+    side = np.arange(round(math.sqrt(count)), dtype=float)
+    return np.stack([a.ravel() for a in np.meshgrid(side, side, 0.0)], axis=1)
+
+
 @pytest.mark.parametrize("make", [lambda n: bumpy_sphere(n).points, jittered])
 def test_balls_and_their_cover_hold_the_surface(make) -> None:
     from scipy.spatial import cKDTree
@@ -138,7 +141,17 @@ def test_the_core_of_a_ball_left_out_lies_in_one_that_is_kept() -> None:
     assert 500 < len(left_out) < 2000
     apart = np.linalg.norm(scene.points[left_out, None] - scene.points[kept], axis=2)
     inside = apart + cloud.CORE * radii[left_out, None] <= radii[kept] * (1 + 1e-12)
-    assert (inside & (kept < left_out[:, None])).any(axis=1).all()
+    assert (inside & (radii[kept] >= radii[left_out, None])).any(axis=1).all()
+
+
+@pytest.mark.parametrize("ball_k", [6, 20])
+@pytest.mark.parametrize("make", [jittered, even_square])
+def test_which_balls_are_kept_does_not_hang_on_the_order_of_the_points(make, ball_k) -> None:
+    points = make(900)
+    order = np.random.default_rng(3).permutation(len(points))
+    kept, again = cloud.cover(of(points), ball_k), cloud.cover(of(points[order]), ball_k)
+    assert len(kept) < len(points)
+    assert np.array_equal(np.sort(order[again]), kept)
 
 
 def test_measured_clouds(data) -> None:

@@ -69,12 +69,10 @@ def test_the_balls_in_order_and_energies_within_them() -> None:
         assert len(one.curves.t) > 0 or not len(one.balls)
 
 
-def test_a_ray_that_pierces_nothing_or_means_nothing() -> None:
+def test_a_ray_that_pierces_nothing() -> None:
     scene, settings = fresh("sphere", 300), Settings()
     past = trace(scene, settings, (3, 3, 3), (1, 0, 0))
     assert (past.status, len(past.balls), len(past.t_query), len(past.curves.t)) == ("background", 0, 0, 0)
-    far = trace(scene, settings, (-1e17, 0, 0), (1, 0, 0))
-    assert (far.status, len(far.balls), len(far.curves.t)) == ("bad_ray", 0, 0)
     assert tracer_of(scene, settings).gathered == 0
     inside = trace(scene, settings, (0, 0, 0), (0, 0, 1))
     assert inside.status == "converged" and 0.9 < inside.t < 1

@@ -9,7 +9,7 @@ import pytest
 
 from jaart.core import prepare
 from jaart.core.camera import Camera
-from jaart.core.errors import Cancelled, FileError, RayError, SettingsError
+from jaart.core.errors import Cancelled, RayError, SettingsError
 from jaart.core.io import load
 from jaart.core.quality import quality
 from jaart.core.records import STATUS, Hits
@@ -121,13 +121,19 @@ def test_rays_of_the_wrong_shape(standard: Scene) -> None:
         render(standard, rays=(np.zeros((2, 3)), np.zeros((3, 3))))
 
 
-@pytest.mark.parametrize(("level", "says"), [(0.0, "no interface"), (1.0, "no interface"),
+@pytest.mark.parametrize("neighbourhood", ["cell_ball", "ball", "cell_knn", "knn"])
+@pytest.mark.parametrize("method", ["tangent", "projection", "mahalanobis"])
+@pytest.mark.parametrize(("level", "says"), [(0.0, "no cell has a level between 0 and 1"),
+                                            (1.0, "no cell has a level between 0 and 1"),
                                             (0.5, "64 interface cells, but the level changes at none")])
-def test_a_lattice_without_a_surface_is_refused(level: float, says: str) -> None:
+def test_a_lattice_without_a_surface_is_all_background(level: float, says: str, method: str,
+                                                       neighbourhood: str) -> None:
     scene = Scene("still.npz", levels=frozen(np.full((4, 4, 4), level)))
-    with pytest.raises(FileError, match=r"still\.npz: levels: ") as error:
-        render(scene)
-    assert says in str(error.value)
+    settings = Settings(method=method, neighbourhood=neighbourhood)
+    hits = render(scene, settings, size=(8, 8))
+    assert hits.counts() == {"background": 64} and not hits.evaluations.any()
+    note, = prepare.surfels(scene, settings).notes
+    assert note.startswith("0 surfels") and says in note
 
 
 @pytest.mark.parametrize("axis", range(3))

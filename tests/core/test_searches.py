@@ -11,6 +11,9 @@ import pytest
 from jaart.core.assemble import ENERGY_NUMBERS
 from jaart.core.records import STATUS
 from jaart.core.render import render
+from jaart.core.scene import Model, Scene
+from jaart.core.settings import Settings
+from jaart.core.shapes import Sphere
 from tests.core.exact_slopes import exact_slope
 from tests.core.oracle_scene import Oracle, Stretch, face_distance, scene_of, stretches
 from tests.core.search_rays import TIGHT, H, rendered, traced
@@ -195,3 +198,13 @@ def test_minimise_takes_the_first_minimum() -> None:
                                         part.enter, part.leave, 16)
             inside = part.enter + 1e-6 < t < part.leave - 1e-6
             assert not (inside and least < oracle.values.level), (i, part)
+
+
+def test_the_safe_search_finds_a_dip_where_f_bends_both_ways() -> None:
+    """Between two looks f rises past 0 and falls again, though its tangents there meet before 0."""
+    scene = Scene("sphere", model=Model((Sphere((0.5, 0.5, 0.5), 0.25),), 16))
+    settings = Settings(search="safe", tolerance=1e-12).replace(h=0.8, radius=6)
+    origin = np.array([[5.579041547445668, 3.823303218621547, -0.5461696047859405]])
+    direction = np.array([[0.2832769997872082, 0.02918364838706245, 0.9585939995943946]])
+    hits = render(scene, settings, rays=(origin, direction))
+    assert hits.hit[0] and hits.t[0] == pytest.approx(9.25744907, abs=1e-7)

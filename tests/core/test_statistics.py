@@ -76,6 +76,15 @@ def test_the_table_holds_every_number(hits):
     assert sum(value for name, _, value in rows if name == "end state") == 6
 
 
+def test_what_is_not_defined_is_empty_in_the_table(hits):
+    nothing = np.full(6, np.nan)
+    idle = Hits(**{**vars(hits), "evaluations": hits.evaluations * 0})
+    rows = {name: value for name, _, value in
+            table(statistics(idle, Quality(math.nan, math.nan, math.nan, 0, 0, 0, 0, nothing, nothing)))}
+    assert rows["delta"] == rows["delta_n"] == rows["mean evaluations"] == rows["mean neighbours"] == ""
+    assert rows["relevant"] == 0 and rows["rays"] == 6
+
+
 def test_the_table_agrees_with_a_picture():
     from jaart.core.io import load
     from jaart.core.render import render

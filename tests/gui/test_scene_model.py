@@ -44,14 +44,18 @@ def test_a_file_that_cannot_be_read_leaves_the_old_scene(qtbot, standard, tmp_pa
     assert (standard.scene, standard.hits, standard.picked) == (scene, hits, picked)
 
 
-def test_a_lattice_without_a_surface_leaves_the_old_scene(qtbot, standard, tmp_path):
+def test_a_lattice_without_a_surface_is_background_and_a_note(qtbot, standard, tmp_path):
     empty = tmp_path / "empty.npz"
     np.savez(empty, levels=np.zeros((5, 5, 5)))
-    scene, failures = standard.scene, counted(standard.failed)
+    failures, told = counted(standard.failed), counted(standard.said)
     standard.open(empty)
     settle(qtbot, standard)
-    assert len(failures) == 1
-    assert standard.scene is scene
+    assert not failures and standard.scene.source == str(empty)
+    assert not standard.hits.hit.any() and standard.trace is None
+    assert any("0 surfels" in text for text, in told)
+    standard.pick(48, 48)
+    settle(qtbot, standard)
+    assert standard.trace.status == "background" and standard.trace.steps == 0
 
 
 def test_shading_is_changed_without_tracing_again(qtbot, standard):

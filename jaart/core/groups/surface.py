@@ -106,7 +106,7 @@ class WeightSettings:
         group="Weight and area", label="Radius", stage="neighbours", source="[T §3.1.3]",
         when=lambda s: evaluates(s) and s.neighbourhood in ("auto", "cell_ball", "ball"),
         help="Radius of the neighbourhood, best 3 h or more: what it cuts off makes f jump at cell faces, and "
-             "holes open. auto: where the weight has fallen to nothing that counts.")
+             "holes open. auto: where the weight has fallen to nothing that counts, on a lattice for the tolerance.")
     k: int = parameter(
         "integer", 12, low=1, high=1000, step=1, group="Weight and area", label="Nearest k", stage="neighbours",
         source="[T §3.1.3]", when=lambda s: evaluates(s) and s.neighbourhood in ("cell_knn", "knn"),

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core import memory
 from jaart.core.errors import FileError
 from jaart.core.io.values import check_memory, check_ratio
 
@@ -60,8 +61,9 @@ class Archive:
         with self.zipped.open(self.members[name]) as stream:
             header = self._parsed(name, stream)
         if header.start + header.nbytes != self.members[name].file_size:
-            raise self.error(name, f"claims shape {header.shape} in {header.nbytes} bytes but has "
-                                   f"{self.members[name].file_size - header.start}; is the file whole?")
+            has = self.members[name].file_size - header.start
+            raise self.error(name, f"claims shape {header.shape}, which needs {memory.words(header.nbytes)} of memory, "
+                                   f"but has {has} of {header.nbytes} bytes; is the file whole?")
         return header
 
     def read(self, name: str, frame: int | None = None) -> NDArray[Any]:

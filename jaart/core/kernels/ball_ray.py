@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.call import search_from
-from jaart.core.kernels.guess import GUESS_WIDTH, meets
+from jaart.core.kernels.guess import GUESS_WIDTH, STATE, meets
 from jaart.core.kernels.heap import pop, push
 from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.leaving import Leave, counting, leave
 from jaart.core.kernels.log import end_log
+from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.ray import added, has_hit, is_bad, no_hit, visiting, write_end
 from jaart.core.kernels.records import Array, Out, Plan, RayEnd, Sites, Start, Vector
 from jaart.core.kernels.tree import Tree, span
@@ -33,6 +35,7 @@ NOTHING, ROOM = -1, -2
 
 
 _ZERO: Any = np.int64(0)
+_NOT_ASKED: Any = np.int64(-1)
 #: A node adds fewer entries than this to the heap.
 _LEAF_ROOM = 64
 
@@ -43,7 +46,8 @@ class Balls(NamedTuple):
     sites: the gathered balls, in the order they were asked for; slot: (N,) place of each ball in sites; ready: of
     the balls gathered, slots from there on are not yet there; centres, radii: (N, 3), (N,); tree: over the balls;
     guesses: (ready, GUESS_WIDTH) what is kept at their centres; stretches: 1 where a ball is searched from side to
-    side, 0 where a search starts from its promise; any_hit: 1 where the first found will do.
+    side, 0 where a search starts from its promise; any_hit: 1 where the first found will do; blur: rounding of the
+    frame's origin.
     """
 
     sites: Sites
@@ -55,6 +59,7 @@ class Balls(NamedTuple):
     guesses: Array
     stretches: int
     any_hit: int
+    blur: float
 
 
 @kernel(STRICT)
@@ -92,18 +97,38 @@ def push_children(balls: Balls, node: int, o: Vector, d: Vector, inverse: Vector
 
 
 @kernel(STRICT)
-def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, number: int) -> Start:
+def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, begin: Leave, number: int) -> Start:
     """Where the search of a ball begins: at its promise, NaN for none, or at its near side for a stretch.
 
-    The base is the ray's foot point on the centre; s counts from there.
+    The base is the ray's foot point on the centre; s counts from there. begin: how the ray leaves its origin. Where a
+    sheet is seen close ahead from there, its promise may lie a little behind.
     """
     foot, half, _ = chord(balls, ball, o, d)
     slot: Any = balls.slot[ball]
     c = (balls.centres[ball, 0], balls.centres[ball, 1], balls.centres[ball, 2])
     base = along((o[0] - c[0], o[1] - c[1], o[2] - c[2]), d, foot)
-    low, high = max(-half, -foot), half
+    low, high = min(max(-half, begin.t - foot), half), half
     s = low if balls.stretches == 1 else meets(balls.guesses[slot], base, d, low, high, plan.rule.h)
+    if s != s and -half < low and 0.0 < begin.ahead < _SAME_SHEET * plan.rule.h and plan.how.kind != r.CENTRES:
+        back = max(-half, low - _SAME_SHEET * plan.rule.h)
+        behind = meets(balls.guesses[slot], base, d, back, low, plan.rule.h)
+        s = low if behind == behind else s
     return Start((slot, _ZERO, _ZERO), base, foot, s, low, high, nan, number)
+
+
+@kernel(STRICT)
+def holds(balls: Balls, ball: int, o: Vector) -> bool:
+    """Whether a ball holds the ray's origin."""
+    x = (o[0] - balls.centres[ball, 0], o[1] - balls.centres[ball, 1], o[2] - balls.centres[ball, 2])
+    return dot(x, x) <= balls.radii[ball] * balls.radii[ball]
+
+
+@kernel(STRICT)
+def leaving(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, work: Array, fit: Array) -> Leave:
+    """How a ray that starts in a ball leaves its origin."""
+    slot: Any = balls.slot[ball]
+    x = (o[0] - balls.centres[ball, 0], o[1] - balls.centres[ball, 1], o[2] - balls.centres[ball, 2])
+    return leave(surfels_near(balls.sites, (slot, _ZERO, _ZERO)), x, o, d, plan, balls.blur, work, fit)
 
 
 @kernel(STRICT)
@@ -127,7 +152,8 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
     inverse = (1.0 / d[0], 1.0 / d[1], 1.0 / d[2])
     count, room = balls.centres.shape[0], keys.shape[0] - _LEAF_ROOM
     end, best, visited, number = no_hit(r.BACKGROUND), no_hit(r.BACKGROUND), 0, 0
-    found, limit, least, slack = False, inf, inf, _SAME_SHEET * plan.rule.h
+    found, limit, first, slack = False, inf, inf, _SAME_SHEET * plan.rule.h
+    begin = Leave(0.0, _NOT_ASKED, nan)
     enter, leave = span(balls.tree.low, balls.tree.high, 0, o, inverse)
     size = push(keys, items, 0, -2.0, -1) if enter <= leave and leave > 0.0 else 0
     while size > 0 and keys[0] < limit:
@@ -141,9 +167,13 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
         ball = item if item < count else item - count
         if balls.slot[ball] < 0 or balls.slot[ball] >= balls.ready:
             return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, nan, 0, ball)
-        start = start_in(balls, plan, ball, o, d, number)
+        if begin.used < 0 and begin.t == 0.0 and holds(balls, ball, o):
+            begin = leaving(balls, plan, ball, o, d, work, fit)
+            end = counting(end, begin)
+        start = start_in(balls, plan, ball, o, d, begin, number)
         visited += 1 if item < count else 0
-        if balls.stretches == 0 and not start.t + start.s > 0.0:
+        if balls.stretches == 0 and not start.t + start.s >= 0.0:
+            end = unpromising(end, int(balls.guesses[balls.slot[ball], STATE]))
             continue
         if item < count and balls.stretches == 0 and balls.any_hit == 0:
             size = push(keys, items, size, start.t + start.s, count + ball)
@@ -158,11 +188,21 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
             end = added(end, one)
             end_log(rows, end.rows if one.steps > 0 else 0, one.state)
         order = one.t if one.f != one.f else one.f  # of a mean of points what it was placed by
-        if has_hit(one.state) and (not found or order < least):
-            found, best, least, limit = True, end, order, order if balls.stretches == 1 else order - slack
+        if has_hit(one.state) and (not found or order < first):
+            found, best, first, limit = True, end, order, order if balls.stretches == 1 else order - slack
             if balls.any_hit == 1:
                 break
     return visiting(end, visited) if not found else finished(best, end, visited)
+
+
+@kernel(STRICT)
+def unpromising(end: RayEnd, kept: int) -> RayEnd:
+    """A ray's end after a ball that promises no hit: it is said where that has no normal. kept: the state at its
+    centre.
+    """
+    state = r.UNDEFINED_NORMAL if kept == r.UNDEFINED_NORMAL else end.state
+    return RayEnd(state, end.t, end.point, end.n, end.energy, end.off, end.iterations, end.evaluations, end.used,
+                  end.cells, end.lowered, end.gap, end.rows, end.missing)
 
 
 @kernel(STRICT)
@@ -184,7 +224,7 @@ def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array,
     tree = Tree(unowned(balls.tree.low), unowned(balls.tree.high), unowned(balls.tree.first),
                 unowned(balls.tree.size), unowned(balls.tree.order))
     balls = Balls(sites, unowned(balls.slot), balls.ready, unowned(balls.centres), unowned(balls.radii), tree,
-                  unowned(balls.guesses), balls.stretches, balls.any_hit)
+                  unowned(balls.guesses), balls.stretches, balls.any_hit, balls.blur)
     scratch, fitted, waiting, numbers, written = unowned(work), unowned(fit), unowned(keys), unowned(items), 0
     for i in range(pixels.shape[0]):
         to = pixels[i]

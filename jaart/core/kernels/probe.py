@@ -106,10 +106,11 @@ def root_between(what: int, sites: Sites, rule: Rule, how: Search, d: Vector, st
     evaluations it took.
 
     width: how close the bracket must get; until: stop as well where f has the other sign than this, NaN for never.
-    The q of a root of f is NaN where the normal changes its side: f jumps over 0 there and has no root.
+    The q of a root of f is NaN where the normal changes its side, or is not defined: f jumps over 0 there and has no
+    root.
     """
     a, b, c = low, high, low
-    looks, evaluations, share = 0, 0, 0.5
+    looks, evaluations, share, lost = 0, 0, 0.5, False
     best = a if abs(quantity(what, a)) < abs(quantity(what, b)) else b
     for _ in range(_MOST):
         gap = abs(b.s - a.s)
@@ -121,6 +122,7 @@ def root_between(what: int, sites: Sites, rule: Rule, how: Search, d: Vector, st
         looks, evaluations = looks + 1, evaluations + new.evaluations
         q = quantity(what, new)
         if not abs(q) < inf:
+            lost = True
             break
         if opposite(until, new.f):
             return new, looks, evaluations
@@ -132,6 +134,6 @@ def root_between(what: int, sites: Sites, rule: Rule, how: Search, d: Vector, st
         b = new
         best = a if abs(quantity(what, a)) < abs(quantity(what, b)) else b
         share = inverse_quadratic(b.s, a.s, c.s, quantity(what, b), quantity(what, a), quantity(what, c))
-    if what == F and best.f != 0.0 and dot(a.value.n, b.value.n) < 0.0:
+    if what == F and best.f != 0.0 and (lost or dot(a.value.n, b.value.n) < 0.0):
         best = Look(best.s, nan, best.f, best.slope, best.e, best.value, best.evaluations)
     return best, looks, evaluations

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite, nan, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from jaart.core.kernels import records as r
 from jaart.core.kernels.call import search_from
 from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.leaving import Leave, counting, leave
 from jaart.core.kernels.log import end_log
+from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.place import centre_of
 from jaart.core.kernels.records import Array, Cell, Cells, End, Out, Plan, RayEnd, Start, Vector
 from jaart.core.kernels.traversal import Axes, advance, axes_of, cell_at, clip, inside, start_at
@@ -21,6 +23,7 @@ from jaart.core.kernels.vectors import along
 #: From farther away one unit in the last place of the origin is wider than a cell.
 _FAR = 1e15
 _NOTHING, _OUTSIDE = (nan, nan, nan), (-1, -1, -1)
+_NOT_ASKED: Any = np.int64(-1)
 
 
 @kernel(STRICT)
@@ -63,13 +66,14 @@ def has_hit(state: int) -> bool:
 class Way(NamedTuple):
     """How a ray goes through the cells, as in Cells; halo: -1 where a search begins in cells with a surfel only.
 
-    first: t where the ray enters the lattice; leave: t where it leaves it.
+    first: t where the ray enters the lattice; leave: t where it leaves it; least: t from which hits count.
     """
 
     halo: int
     uniform: float
     first: float
     leave: float
+    least: float
 
 
 @kernel(STRICT)
@@ -120,18 +124,28 @@ def walk(empty: NDArray[np.uint8], axes: Axes, cell: Cell, t: float, way: Way) -
 
 
 @kernel(STRICT)
-def start_of(cells: Cells, axes: Axes, cell: Cell, begin: Cell, o: Vector, d: Vector, t: float, leave: float,
+def leaving(cells: Cells, plan: Plan, cell: Cell, o: Vector, d: Vector, t: float, work: Array, fit: Array) -> Leave:
+    """How a ray that enters the lattice at t in a cell leaves its origin, if that is there."""
+    if t > 0.0 or not inside(cell, cells.empty.shape) or surfels_near(cells.sites, cell).size == 0:
+        return Leave(0.0, _NOT_ASKED, nan)
+    centre = centre_of(cells.sites, cell)
+    x = (o[0] - centre[0], o[1] - centre[1], o[2] - centre[2])
+    return leave(surfels_near(cells.sites, cell), x, o, d, plan, 0.0, work, fit)
+
+
+@kernel(STRICT)
+def start_of(cells: Cells, axes: Axes, cell: Cell, begin: Cell, o: Vector, d: Vector, t: float, way: Way,
              trust: float, before: float, number: int) -> Start:
     """Where the search of a cell begins, which the ray is in from t on.
 
-    leave: t where the ray leaves the lattice; trust: how far a search may go; before: f at the end of the
-    stretch before.
+    trust: how far a search may go; before: f at the end of the stretch before.
     """
     centre = centre_of(cells.sites, begin)
     base = along((o[0] - centre[0], o[1] - centre[1], o[2] - centre[2]), d, t)
     if cells.stretches == 0:
-        return Start(begin, base, t, 0.0, -trust, trust, nan, number)
-    return Start(begin, base, t, 0.0, 0.0, max(min(advance(axes, cell, 0)[0], leave) - t, 0.0), before, number)
+        return Start(begin, base, t, 0.0, max(way.least - t, -trust), trust, nan, number)
+    high = max(min(advance(axes, cell, 0)[0], way.leave) - t, 0.0)
+    return Start(begin, base, t, 0.0, min(max(way.least - t, 0.0), high), high, before, number)
 
 
 @kernel(STRICT)
@@ -156,17 +170,19 @@ def trace_ray(cells: Cells, plan: Plan, o: Vector, d: Vector, rows: Array, work:
         return no_hit(r.BAD_RAY)
     shape = cells.empty.shape
     axes = axes_of(o, d, shape)
-    t, leave = clip(axes)
-    end, visited, number, before = no_hit(r.BACKGROUND), 0, 0, nan
-    way = Way(cells.halo if cells.stretches == 1 else -1, cells.uniform, t, leave)
-    cell = cell_at(axes, t) if t <= leave else _OUTSIDE
+    t, last = clip(axes)
+    visited, number, before = 0, 0, nan
+    cell = cell_at(axes, t) if t <= last else _OUTSIDE
+    begin = leaving(cells, plan, cell, o, d, t, work, fit)
+    end = counting(no_hit(r.BACKGROUND), begin)
+    way = Way(cells.halo if cells.stretches == 1 else -1, cells.uniform, t, last, begin.t)
     while inside(cell, shape):
-        at, cell, begin, more = walk(cells.empty, axes, cell, t, way)
+        at, cell, beside, more = walk(cells.empty, axes, cell, t, way)
         visited += more
-        if begin[0] < 0:
+        if beside[0] < 0:
             break
         before = before if more == 1 and way.uniform == 0.0 else nan
-        start = start_of(cells, axes, cell, begin, o, d, at, leave, plan.how.trust, before, number)
+        start = start_of(cells, axes, cell, beside, o, d, at, way, plan.how.trust, before, number)
         end, before = search_cell(cells, plan, start, d, rows, end, work, fit)
         number += 1
         if has_hit(end.state):
@@ -175,7 +191,7 @@ def trace_ray(cells: Cells, plan: Plan, o: Vector, d: Vector, rows: Array, work:
             t, cell = advance(axes, cell, free_around(cells.empty, cell, way))
         else:
             t, cell = stride(cells.empty, axes, cell, at, way)
-        if not t < leave:
+        if not t < last:
             break
     return visiting(end, visited)
 

@@ -2,7 +2,7 @@
 
 Steps of at most 0.8 h (0.2 h for hats, which are no smooth weights) with f and its slope; a change of sign is a
 bracket; so is an extremum between two equal signs, where the slopes at both ends point to 0 and the tangents meet
-beyond it. At a silhouette the iteration of
+beyond it, or nearly. At a silhouette the iteration of
 Adamson & Alexa is Newton's method for t² + c² = 0, which never ends; here it is an extremum that stays on its side.
 """
 
@@ -22,15 +22,20 @@ from jaart.core.kernels.weigh import fineness
 _STEP = 0.8
 #: An extremum is looked for until its bracket is this short, in h.
 _EXTREMUM = 1e-9
+#: Tangents that meet closer to 0, in h, say nothing.
+_BENT = 0.25
 
 
 @kernel(STRICT)
-def may_dip(a: Look, b: Look) -> bool:
-    """Whether f may cross 0 and come back between two looks of the same sign: its tangents there meet beyond 0."""
+def may_dip(a: Look, b: Look, h: float) -> bool:
+    """Whether f may cross 0 and come back between two looks of the same sign: its tangents there meet beyond 0, or not
+    far from it, for f may bend both ways between them.
+    """
     if not (a.f * b.f > 0.0 and a.f * a.slope < 0.0 and b.f * b.slope > 0.0):
         return False
     meet = (b.f - a.f + a.slope * a.s - b.slope * b.s) / (a.slope - b.slope)
-    return opposite(a.f, a.f + a.slope * (meet - a.s))
+    top = a.f + a.slope * (meet - a.s)
+    return opposite(a.f, top) or abs(top) < _BENT * h or not a.s < meet < b.s
 
 
 @kernel(STRICT)
@@ -55,7 +60,7 @@ def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
         b = look(F_SLOPE, sites, rule, how, d, start, s, rows, row + looks, work, fit)
         looks, evaluations, lowered = looks + 1, evaluations + b.evaluations, lowered + fewer(b, rule)
         inner = b
-        if may_dip(a, b):
+        if may_dip(a, b, rule.h):
             inner, more, spent = root_between(F_SLOPE, sites, rule, how, d, start, a, b, _EXTREMUM * rule.h, a.f, rows,
                                               row + looks, work, fit)
             looks, evaluations = looks + more, evaluations + spent

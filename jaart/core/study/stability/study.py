@@ -15,7 +15,7 @@ from jaart.core.study.stability.case import CASES, HOLDS, Case, Result
 
 #: The modules that declare the cases.
 MODULES = ("far", "shrinkage", "sheets", "degenerate", "scales", "weights", "rays", "walks", "silhouettes", "optics",
-           "stopping", "lattices", "options", "measures", "machine")
+           "stopping", "lattices", "fills", "options", "measures", "machine")
 COLUMNS = ("case", "name", "input", "expected", "got", "verdict")
 
 
