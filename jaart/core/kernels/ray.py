@@ -20,6 +20,8 @@ from jaart.core.kernels.vectors import along
 
 #: From farther away one unit in the last place of the origin is wider than a cell.
 _FAR = 1e15
+#: A wall that lies in the lattice's border is looked for from this far before it, and beyond it, in cells.
+_RIM = 1e-6
 _NOTHING, _OUTSIDE = (nan, nan, nan), (-1, -1, -1)
 
 
@@ -120,18 +122,20 @@ def walk(empty: NDArray[np.uint8], axes: Axes, cell: Cell, t: float, way: Way) -
 
 
 @kernel(STRICT)
-def start_of(cells: Cells, axes: Axes, cell: Cell, begin: Cell, o: Vector, d: Vector, t: float, leave: float,
+def start_of(cells: Cells, axes: Axes, cell: Cell, begin: Cell, o: Vector, d: Vector, t: float, way: Way,
              trust: float, before: float, number: int) -> Start:
     """Where the search of a cell begins, which the ray is in from t on.
 
-    leave: t where the ray leaves the lattice; trust: how far a search may go; before: f at the end of the
+    way: the ray's through the lattice; trust: how far a search may go; before: f at the end of the
     stretch before.
     """
     centre = centre_of(cells.sites, begin)
     base = along((o[0] - centre[0], o[1] - centre[1], o[2] - centre[2]), d, t)
     if cells.stretches == 0:
         return Start(begin, base, t, 0.0, -trust, trust, nan, number)
-    return Start(begin, base, t, 0.0, 0.0, max(min(advance(axes, cell, 0)[0], leave) - t, 0.0), before, number)
+    low, end = 0.0 if t > way.first or way.uniform > 0.0 else max(-_RIM, -t), advance(axes, cell, 0)[0]
+    high = max(end - t, 0.0) if end < way.leave else way.leave - t + _RIM
+    return Start(begin, base, t, 0.0, low, high, before, number)
 
 
 @kernel(STRICT)
@@ -166,7 +170,7 @@ def trace_ray(cells: Cells, plan: Plan, o: Vector, d: Vector, rows: Array, work:
         if begin[0] < 0:
             break
         before = before if more == 1 and way.uniform == 0.0 else nan
-        start = start_of(cells, axes, cell, begin, o, d, at, leave, plan.how.trust, before, number)
+        start = start_of(cells, axes, cell, begin, o, d, at, way, plan.how.trust, before, number)
         end, before = search_cell(cells, plan, start, d, rows, end, work, fit)
         number += 1
         if has_hit(end.state):
