@@ -41,7 +41,7 @@ def plan_of(scene: Scene, settings: Settings, values: Chosen) -> Plan:
     rule = rule_of(scene, settings, values)
     evaluate = address_of(evaluator(values), call.EVALUATE)
     meets = address_of(approach.approach, call.APPROACH) if rule.degree > 0 else 0
-    how = Search(kind=SEARCHES[values.search], evaluate=evaluate, approach=meets,
+    how = Search(kind=SEARCHES[values.search], proof=int(settings.proof), evaluate=evaluate, approach=meets,
                  accept=address_of(accept.accept, call.ACCEPT), arrived=arrival(settings, values),
                  by_value=int(values.method in FITTED), cap=settings.max_iterations, trust=values.trust,
                  growth=int(settings.bail == "growth"), step=values.step,

@@ -43,6 +43,10 @@ REFUSED: tuple[Refusal, ...] = (
      "the points have no normals and orient = none; expected spanning_tree or a viewpoint"),
     ("search", lambda scene, s, c: _bare(scene) and s.orient == "none" and c.search in SIDED,
      "the points have no normals and orient = none; expected spanning_tree or a viewpoint"),
+    ("proof", lambda scene, s, c: s.proof and (c.search != "safe" or c.method != "tangent" or c.normal != "surfel"
+                                                or c.neighbourhood == "knn"),
+     "bounds are known for the tangent surface with the surfels' normals alone; expected method = tangent, "
+     "normal = surfel, search = safe, and a neighbourhood other than knn"),
     ("shading", lambda scene, s, c: _bare(scene) and s.orient == "none" and s.shading == "water",
      "the points have no normals and orient = none; expected spanning_tree or a viewpoint"),
 )

@@ -56,7 +56,7 @@ OUTCOMES = {
     "continue": "goes on", "converged": "arrived", "background": "background", "cap": "too many steps",
     "left_trust": "left the trust region", "parallel": "plane parallel to the ray",
     "few_neighbours": "no surfel near", "undefined_normal": "normal undefined", "bounded": "refused: off-centre",
-    "floor": "arrived at the precision floor", "undecided": "undecided", "bad_ray": "not a ray",
+    "floor": "arrived at the precision floor", "undecided": "neither hit nor proven miss", "bad_ray": "not a ray",
     "bounded_weight": "refused: little weight", "bounded_nearest": "refused: surfel too far",
     "bounded_angle": "refused: angle", "bounded_gap": "refused: no clear sheet",
 }

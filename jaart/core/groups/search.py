@@ -52,6 +52,13 @@ class SearchSettings:
     bail: str = parameter(
         "choice", "cap", choices=("cap", "growth"), group="Search", label="Give up at", stage="rays",
         source="[A §4]", when=_steps, help="cap: after the iterations allowed; growth: also as soon as |f| grows.")
+    proof: bool = parameter(
+        "flag", False, group="Search", label="Prove misses", stage="rays",
+        source="[Kalra & Barr 1989]",
+        when=lambda s: searches(s) and s.search == "safe",
+        help="A ray of the safe search misses only where bounds of the weights, wider than rounding, prove that there "
+             "is no surface; a miss that they cannot prove is undecided. For the tangent surface with the average of "
+             "the surfels' normals; it takes some times as long.")
     traversal: str = parameter(
         "choice", "exact", choices=("exact", "uniform"), group="Search", label="Traversal", stage="rays",
         source="[T §3.1.4]", scenes=("lattice", "model"), when=searches,

@@ -26,7 +26,7 @@ _VALUE = types.NamedTuple((types.int64, types.float64, _VECTOR, _VECTOR, types.f
                            types.int64), r.Value)
 _SITES = types.NamedTuple((_CELL, _ROWS, types.Array(types.int64, 1, "C"), types.Array(types.int32, 1, "C"),
                            _FLOATS), r.Sites)
-_SEARCH = types.NamedTuple((types.int64,) * 4 + (types.float64, types.int64, types.int64, types.float64, types.int64,
+_SEARCH = types.NamedTuple((types.int64,) * 5 + (types.float64, types.int64, types.int64, types.float64, types.int64,
                                                  types.float64, types.int64, types.int64, types.float64,
                                                  types.int64), r.Search)
 _BOUNDS = types.NamedUniTuple(types.float64, 5, r.Bounds)

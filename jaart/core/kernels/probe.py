@@ -100,6 +100,12 @@ def inverse_quadratic(a: float, b: float, c: float, qa: float, qb: float, qc: fl
 
 
 @kernel(STRICT)
+def closest(s: float, h: float) -> float:
+    """How close a bracket at s can get: rounding is wider than that."""
+    return 2.0 * _UNIT_ROUNDING * (abs(s) + h)
+
+
+@kernel(STRICT)
 def root_between(what: int, sites: Sites, rule: Rule, how: Search, d: Vector, start: Start, low: Look, high: Look,
                  width: float, until: float, rows: Array, row: int, work: Array, fit: Array) -> tuple[Look, int, int]:
     """The look where a quantity changes its sign between two looks [Chandrupatla 1997], how many looks and
@@ -113,10 +119,10 @@ def root_between(what: int, sites: Sites, rule: Rule, how: Search, d: Vector, st
     looks, evaluations, share, lost = 0, 0, 0.5, False
     best = a if abs(quantity(what, a)) < abs(quantity(what, b)) else b
     for _ in range(_MOST):
-        gap = abs(b.s - a.s)
-        if gap <= width or gap <= 2.0 * _UNIT_ROUNDING * (abs(best.s) + rule.h) or quantity(what, best) == 0.0:
+        gap, close = abs(b.s - a.s), max(width, closest(best.s, rule.h))
+        if gap <= close or quantity(what, best) == 0.0:
             break
-        least = 0.5 * width / gap
+        least = 0.5 * close / gap
         share = min(max(share, least), 1.0 - least)
         new = look(what, sites, rule, how, d, start, b.s + share * (a.s - b.s), rows, row + looks, work, fit)
         looks, evaluations = looks + 1, evaluations + new.evaluations

@@ -22,6 +22,8 @@ from jaart.core.kernels.vectors import along
 
 #: From farther away one unit in the last place of the origin is wider than a cell.
 _FAR = 1e15
+#: A wall that lies in the lattice's border is looked for from this far before it, and beyond it, in cells.
+_RIM = 1e-6
 _NOTHING, _OUTSIDE = (nan, nan, nan), (-1, -1, -1)
 _NOT_ASKED: Any = np.int64(-1)
 
@@ -138,14 +140,17 @@ def start_of(cells: Cells, axes: Axes, cell: Cell, begin: Cell, o: Vector, d: Ve
              trust: float, before: float, number: int) -> Start:
     """Where the search of a cell begins, which the ray is in from t on.
 
-    trust: how far a search may go; before: f at the end of the stretch before.
+    way: the ray's through the lattice; trust: how far a search may go; before: f at the end of the
+    stretch before.
     """
     centre = centre_of(cells.sites, begin)
     base = along((o[0] - centre[0], o[1] - centre[1], o[2] - centre[2]), d, t)
     if cells.stretches == 0:
         return Start(begin, base, t, 0.0, max(way.least - t, -trust), trust, nan, number)
-    high = max(min(advance(axes, cell, 0)[0], way.leave) - t, 0.0)
-    return Start(begin, base, t, 0.0, min(max(way.least - t, 0.0), high), high, before, number)
+    end = advance(axes, cell, 0)[0]
+    high = max(end - t, 0.0) if end < way.leave else way.leave - t + _RIM
+    before_it = _RIM if t == way.first and way.uniform == 0.0 else 0.0
+    return Start(begin, base, t, 0.0, min(max(way.least - t, -before_it), high), high, before, number)
 
 
 @kernel(STRICT)

@@ -82,14 +82,16 @@ class Value(NamedTuple):
 class Search(NamedTuple):
     """What a search along a ray needs to know; lengths as in the scene.
 
-    kind: number of SEARCHES; evaluate, approach, accept: addresses of the surface's evaluator, of what meets the ray
-    with a fitted polynomial (0 for a plane), and of what a hit must pass; arrived: a shorter step ends it;
+    kind: number of SEARCHES; proof: 1 where a miss must be proven; evaluate, approach, accept: addresses of the
+    surface's evaluator, of what meets the ray with a fitted polynomial (0 for a plane), and of what a hit must pass;
+    arrived: a shorter step ends it;
     by_value: 1 where |f| is compared in its place [A §4]; cap: steps a start; trust: how far from the start;
     growth: 1 to give up as soon as |f| grows; step: of march; energy, emphasise, level: of minimise;
     true_normal: 1 to give hits the normal -∇f.
     """
 
     kind: int
+    proof: int
     evaluate: int
     approach: int
     accept: int

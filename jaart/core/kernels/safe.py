@@ -1,8 +1,8 @@
 """The guarded search: the first hit on a stretch, never a loop.
 
 Steps of at most 0.8 h (0.2 h for hats, which are no smooth weights) with f and its slope; a change of sign is a
-bracket; so is an extremum between two equal signs, where the slopes at both ends point to 0 and the tangents meet
-beyond it, or nearly. At a silhouette the iteration of
+bracket; so is an extremum between two equal signs, where the slopes at both ends point to 0. Steps are
+shortened where the normal turns fast or f ends. At a silhouette the iteration of
 Adamson & Alexa is Newton's method for t² + c² = 0, which never ends; here it is an extremum that stays on its side.
 """
 
@@ -11,39 +11,59 @@ from __future__ import annotations
 from math import ceil, nan
 
 from jaart.core.kernels import records as r
+from jaart.core.kernels.exclude import exclude
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import surfels_near
-from jaart.core.kernels.probe import F_SLOPE, F, Look, look, opposite, root_between
+from jaart.core.kernels.probe import F_SLOPE, F, Look, closest, look, opposite, root_between
 from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, Start, Vector
 from jaart.core.kernels.stretch import fewer, hit_at, jumps, nothing_found, state_of
+from jaart.core.kernels.vectors import dot
 from jaart.core.kernels.weigh import fineness
 
 #: Length of the steps, in h (of hats, a quarter of it).
 _STEP = 0.8
+#: f is taken to change by no more than this times the way.
+_STEEPEST = 1.5
+#: Normals with a smaller cosine between them have turned too far for one step; steps are shortened to so many parts.
+_TURNED, _FINER = 0.5, 16.0
+#: Where no more surfels count the end of f is looked for up to this share of a step.
+_EDGE = 1e-9
 #: An extremum is looked for until its bracket is this short, in h.
 _EXTREMUM = 1e-9
-#: Tangents that meet closer to 0, in h, say nothing.
-_BENT = 0.25
 
 
 @kernel(STRICT)
-def may_dip(a: Look, b: Look, h: float) -> bool:
-    """Whether f may cross 0 and come back between two looks of the same sign: its tangents there meet beyond 0, or not
-    far from it, for f may bend both ways between them.
+def may_dip(a: Look, b: Look) -> bool:
+    """Whether f may cross 0 and come back between two looks of the same sign: its slopes point to 0 at both.
+
+    Where both values are larger than f could change by on the way it does not.
     """
     if not (a.f * b.f > 0.0 and a.f * a.slope < 0.0 and b.f * b.slope > 0.0):
         return False
-    meet = (b.f - a.f + a.slope * a.s - b.slope * b.s) / (a.slope - b.slope)
-    top = a.f + a.slope * (meet - a.s)
-    return opposite(a.f, top) or abs(top) < _BENT * h or not a.s < meet < b.s
+    return min(abs(a.f), abs(b.f)) < _STEEPEST * (b.s - a.s)
+
+
+@kernel(STRICT)
+def is_rough(a: Look, b: Look, step: float) -> bool:
+    """Whether two looks are too different to tell what is between them: the normal turns, or f ends.
+
+    step: the longest step.
+    """
+    size = b.s - a.s
+    if a.value.state == r.CONTINUE and b.value.state == r.CONTINUE:
+        return dot(a.value.n, b.value.n) < _TURNED and size > step / _FINER
+    if a.value.state != r.CONTINUE and b.value.state != r.CONTINUE:
+        return False
+    f = a.f if a.value.state == r.CONTINUE else b.f
+    return abs(f) < _STEEPEST * size and size > step * _EDGE
 
 
 @kernel(STRICT)
 def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector, start: Start, rows: Array, row: int,
                 work: Array, fit: Array) -> End:
     """The first surface within a stretch; arguments as of `step_search`."""
-    size = int(surfels_near(sites, start.cell).size)
-    if size == 0:
+    surfels = int(surfels_near(sites, start.cell).size)
+    if surfels == 0:
         return nothing_found(r.BACKGROUND, 0, 0, 0, 0, nan)
     count = max(int(ceil((start.high - start.low) / (_STEP * fineness(rule.weight, rule.h)))), 1)
     state, looks, evaluations, lowered = r.BACKGROUND, 0, 0, 0
@@ -51,16 +71,23 @@ def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
     looks, evaluations, lowered = 1, a.evaluations, fewer(a, rule)
     if jumps(start.before, a.f, rule.h):
         end = hit_at(r.FLOOR, sites, rule, how, bounds, d, start, a.s, a.value, a.f, looks, evaluations,
-                     evaluations * size, lowered, work, fit)
+                     evaluations * surfels, lowered, work, fit)
         if end.state == r.FLOOR:
             return end
         state, evaluations = end.state, end.evaluations
-    for i in range(1, count + 1):
-        s = start.low + (start.high - start.low) * (i / count)
+    longest = (start.high - start.low) / count
+    size = longest
+    while a.s < start.high:
+        s = a.s + size
+        s = s if s < start.high - 1e-9 * longest else start.high
         b = look(F_SLOPE, sites, rule, how, d, start, s, rows, row + looks, work, fit)
         looks, evaluations, lowered = looks + 1, evaluations + b.evaluations, lowered + fewer(b, rule)
+        if is_rough(a, b, longest):
+            size = 0.5 * (b.s - a.s)
+            continue
+        size = min(2.0 * size, longest)
         inner = b
-        if may_dip(a, b, rule.h):
+        if may_dip(a, b):
             inner, more, spent = root_between(F_SLOPE, sites, rule, how, d, start, a, b, _EXTREMUM * rule.h, a.f, rows,
                                               row + looks, work, fit)
             looks, evaluations = looks + more, evaluations + spent
@@ -73,12 +100,17 @@ def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
             looks, evaluations = looks + more, evaluations + spent
             if hit.q != hit.q:
                 continue
-            end = hit_at(r.CONVERGED, sites, rule, how, bounds, d, start, hit.s, hit.value, hit.f, looks, evaluations,
-                         evaluations * size, lowered, work, fit)
-            if end.state == r.CONVERGED:
+            arrived = how.arrived > closest(hit.s, rule.h) or how.arrived > 0.0 == hit.f
+            end = hit_at(r.CONVERGED if arrived else r.FLOOR, sites, rule, how, bounds, d, start, hit.s, hit.value,
+                         hit.f, looks, evaluations, evaluations * surfels, lowered, work, fit)
+            if end.state == r.CONVERGED or end.state == r.FLOOR:
                 return end
             state, evaluations = end.state, end.evaluations
         if b.value.state != r.CONTINUE:
             state = state_of(b.value, state)
         a = b
-    return nothing_found(state, looks, evaluations, evaluations * size, lowered, a.f)
+    if how.proof == 1 and state == r.BACKGROUND:
+        doubtful, more = exclude(surfels_near(sites, start.cell), start.base, d, start.low, start.high, rule,
+                                 bounds.off_centre)
+        state, evaluations = r.UNDECIDED if doubtful == doubtful else state, evaluations + more
+    return nothing_found(state, looks, evaluations, evaluations * surfels, lowered, a.f)

@@ -78,6 +78,19 @@ def gaussian(near: Near, x: Vector, h: float, reach: float, w: Array) -> tuple[f
 
 
 @kernel()
+def radial(weight: int, y: float) -> float:
+    """The hat, the squared hat [T §3.2.2] or Wendland's function, y: squared distance as a share of its end's."""
+    if weight == r.SQUARED_HAT:
+        v = 1.0 - y
+    else:
+        q = sqrt(y)
+        v = 1.0 - q
+        if weight == r.WENDLAND:
+            v = v * v * v * v * (4.0 * q + 1.0)
+    return v if y < 1.0 else 0.0
+
+
+@kernel()
 def compact(near: Near, x: Vector, weight: int, h: float, reach: float, w: Array) -> float:
     """Write the hat 1 - q/h, the squared hat 1 - q²/h² [T §3.2.2] or Wendland's function; returns Σθ.
 
@@ -90,14 +103,8 @@ def compact(near: Near, x: Vector, weight: int, h: float, reach: float, w: Array
     s = 0.0
     for i in range(near.size):
         y = square_distance(near, i, x, per_end)
-        q = sqrt(y)
-        if weight == r.HAT:
-            v = 1.0 - q
-        elif weight == r.SQUARED_HAT:
-            v = 1.0 - y
-        else:
-            v = (1.0 - q) * (1.0 - q) * (1.0 - q) * (1.0 - q) * (4.0 * q + 1.0)
-        w[i] = v if y < 1.0 and y <= square else 0.0
+        v = radial(weight, y)
+        w[i] = v if y <= square else 0.0
         s += w[i]
     return s
 

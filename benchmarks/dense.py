@@ -1,0 +1,188 @@
+"""A dense look at f along rays, its extrema refined: the truth that searches are held against.
+
+It reads the very lists of surfels that the searches use, and is written down once more, literally and slowly: every
+weight, every sum, every sample. f(x) = <n(x), a(x) - x> with the surfels' normals [T 2.12, 2.13, 2.15].
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numba
+import numpy as np
+
+from jaart.core import prepare
+from jaart.core.kernels.weigh import WENDLAND_END
+from jaart.core.scene import Array, Scene
+from jaart.core.settings import Settings
+from jaart.core.tracers import OnLattice
+
+#: Between two samples, in h.
+STEP = 0.05
+#: A root is one where |f| comes down to this; a larger value is a jump of f over 0. In h.
+SMALL = 1e-9
+GOLDEN = 0.5 * (math.sqrt(5) - 1)
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def value(table: Any, x: float, y: float, z: float, i: int, j: int, k: int) -> tuple[float, float, float, float]:
+    """f and n at a point, with the surfels near cell (i, j, k); NaN where none counts."""
+    first, columns, shape, h, gaussian = table
+    cell = (i * shape[1] + j) * shape[2] + k
+    count, base = first[cell + 1] - first[cell], 6 * first[cell]
+    x, y, z = x - i - 0.5, y - j - 0.5, z - k - 0.5
+    nearest = np.inf
+    for s in range(base, base + count):
+        q = (columns[s] - x) ** 2 + (columns[s + count] - y) ** 2 + (columns[s + 2 * count] - z) ** 2
+        nearest = min(nearest, q)
+    total = ax = ay = az = nx = ny = nz = 0.0
+    for s in range(base, base + count):
+        qx, qy, qz = columns[s] - x, columns[s + count] - y, columns[s + 2 * count] - z
+        square = qx * qx + qy * qy + qz * qz
+        if gaussian:
+            w = math.exp((nearest - square) / (h * h))
+        else:
+            r = math.sqrt(square) / (WENDLAND_END * h)
+            w = (1 - r) ** 4 * (4 * r + 1) if r < 1 else 0.0
+        total += w
+        ax, ay, az = ax + w * qx, ay + w * qy, az + w * qz
+        nx += w * columns[s + 3 * count]
+        ny += w * columns[s + 4 * count]
+        nz += w * columns[s + 5 * count]
+    size = math.sqrt(nx * nx + ny * ny + nz * nz)
+    if not (total > 0 and size > 1e-8 * total):
+        return np.nan, np.nan, np.nan, np.nan
+    return (nx * ax + ny * ay + nz * az) / (size * total), nx / size, ny / size, nz / size
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def cell_of(shape: Any, x: Any) -> tuple[int, int, int]:
+    """The cell that a point is in, the nearest of the lattice for one outside."""
+    return (min(max(int(math.floor(x[0])), 0), shape[0] - 1), min(max(int(math.floor(x[1])), 0), shape[1] - 1),
+            min(max(int(math.floor(x[2])), 0), shape[2] - 1))
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def f_at(table: Any, o: Any, d: Any, t: float) -> float:
+    """f at a distance along a ray, with the list of the cell it is in there."""
+    x = (o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2])
+    i, j, k = cell_of(table[2], x)
+    return value(table, x[0], x[1], x[2], i, j, k)[0]
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def ended(table: Any, o: Any, d: Any, low: float, high: float) -> float:
+    """The last place with an f between one that has none and one that has, or the other way round."""
+    there = not math.isnan(f_at(table, o, d, low))
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if math.isnan(f_at(table, o, d, middle)) != there:
+            low = middle
+        else:
+            high = middle
+    return low if there else high
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def halved(table: Any, o: Any, d: Any, low: float, high: float) -> float:
+    """Where f changes its sign between two places."""
+    rising = f_at(table, o, d, low) < 0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if (f_at(table, o, d, middle) < 0) == rising:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def extremum(table: Any, o: Any, d: Any, low: float, high: float, sign: float) -> float:
+    """Where sign·f is least between two places, by golden section; its value is right to rounding there."""
+    a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    fa, fb = sign * f_at(table, o, d, a), sign * f_at(table, o, d, b)
+    for _ in range(50):
+        if fa < fb:
+            high, b, fb = b, a, fa
+            a = high - GOLDEN * (high - low)
+            fa = sign * f_at(table, o, d, a)
+        else:
+            low, a, fa = a, b, fb
+            b = low + GOLDEN * (high - low)
+            fb = sign * f_at(table, o, d, b)
+    return a if fa < fb else b
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def is_surface(table: Any, o: Any, d: Any, t: float) -> bool:
+    """Whether a change of sign is a root, and f falls along n there."""
+    h, x = table[3], (o[0] + t * d[0], o[1] + t * d[1], o[2] + t * d[2])
+    i, j, k = cell_of(table[2], x)
+    f, nx, ny, nz = value(table, x[0], x[1], x[2], i, j, k)
+    e = 1e-5 * h
+    above, ax, ay, az = value(table, x[0] + e * nx, x[1] + e * ny, x[2] + e * nz, i, j, k)
+    below, bx, by, bz = value(table, x[0] - e * nx, x[1] - e * ny, x[2] - e * nz, i, j, k)
+    above *= 1.0 if ax * nx + ay * ny + az * nz > 0 else -1.0
+    below *= 1.0 if bx * nx + by * ny + bz * nz > 0 else -1.0
+    return abs(f) < SMALL * h and above <= below
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def first_surface(table: Any, o: Any, d: Any, step: float) -> float:
+    """The first t of the surface on a ray, NaN for none."""
+    shape, enter, leave = table[2], 0.0, np.inf
+    for axis in (0, 1, 2):
+        a, b = -o[axis] / d[axis], (shape[axis] - o[axis]) / d[axis]
+        enter, leave = max(enter, min(a, b)), min(leave, max(a, b))
+    before = last = np.nan
+    count = int(math.ceil((leave - enter) / step)) if leave > enter else -1
+    for number in range(count + 1):
+        t = enter + (leave - enter) * number / max(count, 1)
+        f, wide = f_at(table, o, d, t), (leave - enter) / max(count, 1)
+        if number > 0 and (last == last) != (f == f):
+            edge = ended(table, o, d, t - wide, t)
+            at_edge = f_at(table, o, d, edge)
+            low, high = (edge, t) if f == f else (t - wide, edge)
+            if at_edge * (f if f == f else last) <= 0:
+                root = halved(table, o, d, low, high)
+                if is_surface(table, o, d, root):
+                    return root
+        if last * f <= 0:
+            root = halved(table, o, d, t - wide, t)
+            if is_surface(table, o, d, root):
+                return root
+        elif before * last > 0 and abs(last) <= abs(before) and abs(last) <= abs(f):
+            sign = 1.0 if last > 0 else -1.0
+            dip = extremum(table, o, d, t - 2 * wide, t, sign)
+            if sign * f_at(table, o, d, dip) < 0:
+                for low, high in ((t - 2 * wide, dip), (dip, t)):
+                    root = halved(table, o, d, low, high)
+                    if is_surface(table, o, d, root):
+                        return root
+        before, last = last, f
+    return np.nan
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def first_surfaces(table: Any, origins: Array, directions: Array, step: float, found: Array) -> None:
+    """The same for each of some rays (R, 3)."""
+    for ray in range(len(found)):
+        found[ray] = first_surface(table, origins[ray], directions[ray], step)
+
+
+def looked(scene: Scene, settings: Settings, origins: Array, directions: Array, step: float = STEP) -> Array:
+    """The first t (R,) of each ray in a lattice, NaN where it misses; step in h."""
+    ready = prepare.prepared(scene, settings)
+    assert isinstance(ready.tracer, OnLattice) and ready.values.weight in ("gaussian", "wendland")
+    sites, h = ready.tracer.sites, ready.values.h
+    table = sites.first, sites.columns, sites.shape, h, ready.values.weight == "gaussian"
+    found = np.empty(len(origins))
+    pieces = np.array_split(np.arange(len(origins)), 64)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(lambda piece: first_surfaces(table, origins[piece[0]:piece[-1] + 1],
+                                                   directions[piece[0]:piece[-1] + 1], step * h,
+                                                   found[piece[0]:piece[-1] + 1]), [p for p in pieces if len(p)]))
+    return found
