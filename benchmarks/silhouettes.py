@@ -39,8 +39,7 @@ def scenes() -> dict[str, tuple[Scene, Settings]]:
 
 def settings(**values: object) -> Settings:
     """The tangent surface at its tightest, by the safe search."""
-    return Settings(method="tangent", search="safe", h=H, tolerance=1e-10, max_off_centre="none",
-                    max_iterations=100, **values)
+    return Settings(method="tangent", search="safe", h=H, tolerance=1e-10, max_iterations=100, **values)
 
 
 @dataclass(frozen=True)

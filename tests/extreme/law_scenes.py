@@ -129,12 +129,12 @@ def same_but_for_rounding(one: Hits, other: Hits, setup: Setup, blur: float = 0.
 def bound(found: Hits, setup: Setup, blur: float) -> Array:
     """How far apart in t two roundings of the same hits may be.
 
-    t itself is rounded to an ulp by each, and f to some ulps of h, which a slanting ray sees 1/cos longer; a
-    projection's f ends an iteration, at more of them. A least value has no sign to bisect, so that its search ends
-    within the tolerance.
+    t itself is rounded to an ulp by each, and f to some ulps of h, which a slanting ray sees 1/cos longer. A least
+    value has no sign to bisect, and a projection's f ends an iteration of its own: their searches end within the
+    tolerance.
     """
     h = chosen(setup.scene, found.settings).h
     cosine = np.abs((found.normal * found.direction).sum(axis=1))[found.hit]
-    slack = 4 * TIGHT * h if found.settings.search == "minimise" else 0.0
-    ulps = 256 if found.settings.method == "projection" else 64
-    return 4 * np.spacing(found.t[found.hit]) + (ulps * np.spacing(h) + 16 * blur) / cosine + slack
+    within = found.settings.search == "minimise" or found.settings.method == "projection"
+    slack = 4 * TIGHT * h if within else 0.0
+    return 4 * np.spacing(found.t[found.hit]) + (64 * np.spacing(h) + 16 * blur) / cosine + slack

@@ -102,7 +102,7 @@ def inverse_quadratic(a: float, b: float, c: float, qa: float, qb: float, qc: fl
 @kernel(STRICT)
 def closest(s: float, h: float) -> float:
     """How close a bracket at s can get: rounding is wider than that."""
-    return 2.0 * _UNIT_ROUNDING * (abs(s) + h)
+    return _UNIT_ROUNDING * (abs(s) + h)
 
 
 @kernel(STRICT)

@@ -23,7 +23,7 @@ from jaart.core.kernels.vectors import along
 #: From farther away one unit in the last place of the origin is wider than a cell.
 _FAR = 1e15
 #: A wall that lies in the lattice's border is looked for from this far before it, and beyond it, in cells.
-_RIM = 1e-6
+_RIM = 1e-9
 _NOTHING, _OUTSIDE = (nan, nan, nan), (-1, -1, -1)
 _NOT_ASKED: Any = np.int64(-1)
 

@@ -2,7 +2,7 @@
 
 Steps of at most 0.8 h (0.2 h for hats, which are no smooth weights) with f and its slope; a change of sign is a
 bracket; so is an extremum between two equal signs, where the slopes at both ends point to 0. Steps are
-shortened where the normal turns fast or f ends. At a silhouette the iteration of
+shortened where the normal turns, f jumps or ends, and near 0. At a silhouette the iteration of
 Adamson & Alexa is Newton's method for t² + c² = 0, which never ends; here it is an extremum that stays on its side.
 """
 
@@ -24,10 +24,15 @@ from jaart.core.kernels.weigh import fineness
 _STEP = 0.8
 #: f is taken to change by no more than this times the way.
 _STEEPEST = 1.5
-#: Normals with a smaller cosine between them have turned too far for one step; steps are shortened to so many parts.
-_TURNED, _FINER = 0.5, 16.0
-#: Where no more surfels count the end of f is looked for up to this share of a step.
-_EDGE = 1e-9
+#: Normals with a smaller cosine between them have turned too far for one step.
+_TURNED = 0.5
+#: A smaller change of f, in h, is no jump, however steep.
+_JUMP = 0.1
+#: Within a step f bends by less than this times the step's square over h.
+_BENT = 0.05
+#: Steps are shortened up to this share where the normal or f jumps, to a part of so many near 0, and up to this share
+#: where f ends because no more surfels count.
+_FINEST, _FINER, _EDGE = 1e-6, 8.0, 1e-9
 #: An extremum is looked for until its bracket is this short, in h.
 _EXTREMUM = 1e-9
 
@@ -44,14 +49,18 @@ def may_dip(a: Look, b: Look) -> bool:
 
 
 @kernel(STRICT)
-def is_rough(a: Look, b: Look, step: float) -> bool:
-    """Whether two looks are too different to tell what is between them: the normal turns, or f ends.
+def is_rough(a: Look, b: Look, step: float, h: float) -> bool:
+    """Whether two looks are too different, or too near to 0, to tell what is between them.
 
+    The normal turns, f changes faster than it can over a sheet, f ends, or f may bend through 0 and back unseen.
     step: the longest step.
     """
     size = b.s - a.s
     if a.value.state == r.CONTINUE and b.value.state == r.CONTINUE:
-        return dot(a.value.n, b.value.n) < _TURNED and size > step / _FINER
+        if dot(a.value.n, b.value.n) < _TURNED or abs(b.f - a.f) > max(_STEEPEST * size, _JUMP * h):
+            return size > step * _FINEST
+        nearest = min(abs(a.f), abs(b.f))
+        return a.f * b.f > 0.0 and nearest < _BENT * size * size / h and size > step / _FINER
     if a.value.state != r.CONTINUE and b.value.state != r.CONTINUE:
         return False
     f = a.f if a.value.state == r.CONTINUE else b.f
@@ -82,7 +91,7 @@ def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
         s = s if s < start.high - 1e-9 * longest else start.high
         b = look(F_SLOPE, sites, rule, how, d, start, s, rows, row + looks, work, fit)
         looks, evaluations, lowered = looks + 1, evaluations + b.evaluations, lowered + fewer(b, rule)
-        if is_rough(a, b, longest):
+        if is_rough(a, b, longest, rule.h):
             size = 0.5 * (b.s - a.s)
             continue
         size = min(2.0 * size, longest)
