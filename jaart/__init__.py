@@ -13,16 +13,18 @@ if TYPE_CHECKING:
     from jaart.core.camera import Camera
     from jaart.core.io import load
     from jaart.core.isosurface import isosurface
+    from jaart.core.notes import notes
     from jaart.core.picture import picture
     from jaart.core.quality import quality
     from jaart.core.render import render
     from jaart.core.scene import Scene
     from jaart.core.settings import Settings, preset
+    from jaart.core.study.stability.study import stability
     from jaart.core.trace import trace
 
 __version__ = "0.1.0"
 
-__all__ = ["load", "render", "picture", "trace", "quality", "isosurface", "Settings", "Camera", "preset", "Scene",
+__all__ = ["load", "render", "picture", "trace", "quality", "isosurface", "notes", "stability", "Settings", "Camera", "preset", "Scene",
            "errors", "__version__"]
 
 #: Where each public name lives; importing them here would load numpy and numba with the package.
@@ -30,7 +32,7 @@ _HOMES = {
     "load": "jaart.core.io", "render": "jaart.core.render", "trace": "jaart.core.trace",
     "quality": "jaart.core.quality", "Settings": "jaart.core.settings", "Camera": "jaart.core.camera",
     "preset": "jaart.core.settings", "Scene": "jaart.core.scene", "isosurface": "jaart.core.isosurface",
-    "picture": "jaart.core.picture",
+    "picture": "jaart.core.picture", "notes": "jaart.core.notes", "stability": "jaart.core.study.stability.study",
 }
 
 

@@ -82,9 +82,14 @@ SEEDS = st.integers(0, 10**6)
 
 @st.composite
 def cloud_settings(draw: st.DrawFn, tolerance: float) -> Settings:
-    """Settings that make sense in every cloud here."""
-    return _common(draw, tolerance).replace(neighbourhood=draw(st.sampled_from(("ball", "knn"))), k=draw(
-        st.integers(8, 24)), h=draw(st.sampled_from(("auto", "3s", "0.08d"))), ball_k=draw(st.sampled_from((6, 12))))
+    """Settings that make sense in every cloud here.
+
+    A projection's plane through few nearest points may be another one by rounding: it has balls alone.
+    """
+    common = _common(draw, tolerance)
+    near = ("ball",) if common.method == "projection" else ("ball", "knn")
+    return common.replace(neighbourhood=draw(st.sampled_from(near)), k=draw(st.integers(8, 24)),
+                          h=draw(st.sampled_from(("auto", "3s", "0.08d"))), ball_k=draw(st.sampled_from((6, 12))))
 
 
 @st.composite
