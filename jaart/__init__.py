@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-__all__ = ["load", "render", "picture", "trace", "quality", "isosurface", "notes", "stability", "Settings", "Camera", "preset", "Scene",
-           "errors", "__version__"]
+__all__ = ["load", "render", "picture", "trace", "quality", "isosurface", "notes", "stability", "Settings", "Camera",
+           "preset", "Scene", "errors", "__version__"]
 
 #: Where each public name lives; importing them here would load numpy and numba with the package.
 _HOMES = {

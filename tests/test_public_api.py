@@ -32,6 +32,7 @@ def test_a_picture_and_a_mesh():
     scene, settings = jaart.load("standard"), jaart.preset("thesis")
     hits, colours = jaart.picture(scene, settings, size=(24, 16))
     assert colours.shape == (16, 24, 3) and len(hits) == 24 * 16
+    assert jaart.notes(scene, settings) == ()
     mesh = jaart.isosurface(scene, settings, "fill_level")
     assert len(mesh) > 100 and mesh.vertices.min() >= 0 and mesh.vertices.max() <= 16
 
