@@ -21,6 +21,8 @@ Vector = tuple[float, float, float]
 CUBIC: Vector = (1.0, 1.0, 1.0)
 #: A lattice that sticks out of its last cell by less than this ends there.
 ROUNDING = 1e-9
+#: Cells without a normal are worth a note when they are more than this share of the surfels.
+MANY = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +46,11 @@ class Surfels:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a person should know of them: that there are none and why, or how many cells gave none."""
+        """What a person should know of them: that there are none and why, or how many cells gave none if many did."""
         cells = f"{self.without_normal} interface cell{'' if self.without_normal == 1 else 's'}"
-        if self.without_normal and len(self):
+        if len(self) and self.without_normal > MANY * len(self):
             return (f"{cells} without a normal left out: the level does not change across them",)
-        if self.without_normal:
+        if self.without_normal and not len(self):
             return (f"0 surfels, so there is no surface: {cells}, but the level changes at none of them",)
         if not len(self):
             return ("0 surfels, so there is no surface: no cell has a level between 0 and 1, and no full cell lies "

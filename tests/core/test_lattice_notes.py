@@ -22,8 +22,12 @@ def of_solids(*solids: Sphere | Box, **values: object) -> list[str]:
     return [text for text in notes(scene, Settings(**values)) if "thinner than a cell" in text]
 
 
-def test_cells_without_a_normal_are_counted() -> None:
-    levels = np.zeros((9, 5, 5))
+def test_cells_without_a_normal_are_counted_where_they_are_many() -> None:
+    levels = np.zeros((9, 9, 9))
+    levels[0], levels[1] = 1.0, 0.5
+    levels[4, 2, 2] = 0.5
+    assert said(levels) == ()
+    levels = np.zeros((9, 4, 4))
     levels[0], levels[1] = 1.0, 0.5
     assert said(levels) == ()
     levels[4, 2, 2] = 0.5

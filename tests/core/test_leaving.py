@@ -75,12 +75,14 @@ def test_an_energys_minimum_is_not_met_again(method: str) -> None:
     assert not render(scene("cloud"), settings, rays=back).hit.any()
 
 
-def test_the_look_at_the_origin_is_counted() -> None:
-    settings = frame("lattice")[2].replace(search="newton")
-    above, far = (render(scene("lattice"), settings, rays=(np.array([[8.0, 8.0, z]]), np.array([[0, 0, 1.0]])))
-                  for z in (13.0, 16.5))
-    assert above.evaluations[0] == far.evaluations[0] + 1 and far.evaluations[0] == 0
-    assert above.neighbours[0] > 0 and far.neighbours[0] == 0
+def test_the_look_at_the_origin_is_counted_and_only_taken_where_a_hit_is_near() -> None:
+    on, (_, _, settings) = on_surface("lattice"), frame("lattice")
+    for height, looks in ((1e-3, 1), (0.5, 0)):
+        hits = render(scene("lattice"), settings.replace(search="secant"),
+                      rays=(on.point + height * on.normal, -on.normal))
+        steps = [trace(scene("lattice"), hits.settings, *ray).steps for ray in zip(hits.origin, hits.direction,
+                                                                                   strict=True)]
+        assert hits.hit.all() and (hits.evaluations - steps == looks).all()
 
 
 def test_the_side_that_a_ray_sees_is_known() -> None:

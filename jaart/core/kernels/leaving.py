@@ -23,7 +23,7 @@ from jaart.core.kernels.vectors import dot, length
 #: Eight units in the last place of 1: f at a rounded point of the surface is less, times its distance from 0 and h.
 ROUNDING = 1.8e-15
 #: Hits count from here at the latest, and those of energies always, in h.
-_FARTHEST, _FLAT = 0.125, 1e-4
+FARTHEST, _FLAT = 0.125, 1e-4
 _NONE: Any = np.int64(-1)
 
 
@@ -40,19 +40,25 @@ class Leave(NamedTuple):
 
 
 @kernel(STRICT)
+def least_of_energies(plan: Plan) -> float:
+    """From which t hits of a least energy count on a ray that starts among the surfels; 0 for other searches."""
+    return _FLAT * plan.rule.h if plan.how.kind == r.MINIMISE else 0.0
+
+
+@kernel(STRICT)
 def leave(near: Near, x: Vector, o: Vector, d: Vector, plan: Plan, blur: float, work: Array, fit: Array) -> Leave:
     """How a ray leaves its origin; hits count from t = 0 when it does not start on the surface.
 
     x, o: the origin relative to the place's centre, and in the scene's frame; blur: rounding of that frame.
     """
     if plan.how.kind == r.MINIMISE:
-        return Leave(_FLAT * plan.rule.h, _NONE, nan)
+        return Leave(least_of_energies(plan), _NONE, nan)
     v = evaluate_at(plan.how.evaluate, near, x, plan.rule, r.VALUE_ONLY, work, fit)
     size: Any = np.int64(near.size)
     noise, h = ROUNDING * (length(o) + plan.rule.h) + blur, plan.rule.h
     if v.state != r.CONTINUE or not abs(v.f) <= noise:
         return Leave(0.0, size, v.f / dot(v.n, d))
-    return Leave(min(max(plan.how.arrived, noise / abs(dot(v.n, d))), _FARTHEST * h), size, nan)
+    return Leave(min(max(plan.how.arrived, noise / abs(dot(v.n, d))), FARTHEST * h), size, nan)
 
 
 @kernel(STRICT)

@@ -111,18 +111,19 @@ def root_between(what: int, sites: Sites, rule: Rule, how: Search, d: Vector, st
     """The look where a quantity changes its sign between two looks [Chandrupatla 1997], how many looks and
     evaluations it took.
 
-    width: how close the bracket must get; until: stop as well where f has the other sign than this, NaN for never.
-    The q of a root of f is NaN where the normal changes its side, or is not defined: f jumps over 0 there and has no
+    width: how close the bracket must get, and f to 0 where that is looked for; until: stop as well where f has the
+    other sign than this, NaN for never. The q of a root of f is NaN where the normal changes its side, or is not defined: f jumps over 0 there and has no
     root.
     """
     a, b, c = low, high, low
     looks, evaluations, share, lost = 0, 0, 0.5, False
     best = a if abs(quantity(what, a)) < abs(quantity(what, b)) else b
     for _ in range(_MOST):
-        gap, close = abs(b.s - a.s), max(width, closest(best.s, rule.h))
-        if gap <= close or quantity(what, best) == 0.0:
+        gap, close = abs(b.s - a.s), closest(best.s, rule.h)
+        narrow = gap <= width and (what != F or abs(best.f) <= width)
+        if narrow or gap <= close or quantity(what, best) == 0.0:
             break
-        least = 0.5 * close / gap
+        least = 0.5 * max(width if gap > width else 0.0, close) / gap
         share = min(max(share, least), 1.0 - least)
         new = look(what, sites, rule, how, d, start, b.s + share * (a.s - b.s), rows, row + looks, work, fit)
         looks, evaluations = looks + 1, evaluations + new.evaluations

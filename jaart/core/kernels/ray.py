@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from jaart.core.kernels import records as r
 from jaart.core.kernels.call import search_from
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.leaving import Leave, counting, leave
+from jaart.core.kernels.leaving import FARTHEST, Leave, counting, least_of_energies, leave
 from jaart.core.kernels.log import end_log
 from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.place import centre_of
@@ -126,9 +126,10 @@ def walk(empty: NDArray[np.uint8], axes: Axes, cell: Cell, t: float, way: Way) -
 
 
 @kernel(STRICT)
-def leaving(cells: Cells, plan: Plan, cell: Cell, o: Vector, d: Vector, t: float, work: Array, fit: Array) -> Leave:
-    """How a ray that enters the lattice at t in a cell leaves its origin, if that is there."""
-    if t > 0.0 or not inside(cell, cells.empty.shape) or surfels_near(cells.sites, cell).size == 0:
+def leaving(cells: Cells, plan: Plan, axes: Axes, o: Vector, d: Vector, work: Array, fit: Array) -> Leave:
+    """How a ray that starts in the lattice leaves its origin."""
+    cell = cell_at(axes, 0.0)
+    if surfels_near(cells.sites, cell).size == 0:
         return Leave(0.0, _NOT_ASKED, nan)
     centre = centre_of(cells.sites, cell)
     x = (o[0] - centre[0], o[1] - centre[1], o[2] - centre[2])
@@ -166,6 +167,14 @@ def search_cell(cells: Cells, plan: Plan, start: Start, d: Vector, rows: Array, 
 
 
 @kernel(STRICT)
+def behind(end: RayEnd, rows: Array) -> RayEnd:
+    """A ray's end after a hit that does not count: it lies at the ray's own origin."""
+    end_log(rows, end.rows, r.LEFT_TRUST)
+    return RayEnd(r.LEFT_TRUST, nan, _NOTHING, _NOTHING, end.energy, end.off, end.iterations, end.evaluations,
+                  end.used, end.cells, end.lowered, nan, end.rows, end.missing)
+
+
+@kernel(STRICT)
 def trace_ray(cells: Cells, plan: Plan, o: Vector, d: Vector, rows: Array, work: Array, fit: Array) -> RayEnd:
     """The first hit of a ray, or how its last start ended.
 
@@ -178,18 +187,25 @@ def trace_ray(cells: Cells, plan: Plan, o: Vector, d: Vector, rows: Array, work:
     t, last = clip(axes)
     visited, number, before = 0, 0, nan
     cell = cell_at(axes, t) if t <= last else _OUTSIDE
-    begin = leaving(cells, plan, cell, o, d, t, work, fit)
-    end = counting(no_hit(r.BACKGROUND), begin)
-    way = Way(cells.halo if cells.stretches == 1 else -1, cells.uniform, t, last, begin.t)
+    end, inner = no_hit(r.BACKGROUND), t == 0.0
+    flat = least_of_energies(plan) if inner else 0.0
+    way = Way(cells.halo if cells.stretches == 1 else -1, cells.uniform, t, last, flat)
     while inside(cell, shape):
-        at, cell, beside, more = walk(cells.empty, axes, cell, t, way)
+        at, cell, begin, more = walk(cells.empty, axes, cell, t, way)
         visited += more
-        if beside[0] < 0:
+        if begin[0] < 0:
             break
         before = before if more == 1 and way.uniform == 0.0 else nan
-        start = start_of(cells, axes, cell, beside, o, d, at, way, plan.how.trust, before, number)
+        start = start_of(cells, axes, cell, begin, o, d, at, way, plan.how.trust, before, number)
         end, before = search_cell(cells, plan, start, d, rows, end, work, fit)
         number += 1
+        if inner and has_hit(end.state) and end.t < FARTHEST * plan.rule.h:  # perhaps it is the ray's own origin
+            found, inner = leaving(cells, plan, axes, o, d, work, fit), False
+            end = counting(end, found)
+            if end.t < found.t:
+                end, before, t, visited = behind(end, rows), nan, at, visited - 1
+                way = Way(way.halo, way.uniform, way.first, way.leave, found.t)
+                continue
         if has_hit(end.state):
             break
         if way.uniform == 0.0:
