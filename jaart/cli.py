@@ -66,6 +66,8 @@ def _start(version: Annotated[bool, typer.Option("--version", help="Say the vers
     """Ray tracing of point-based surfaces, one ray at a time in plain sight.
 
     No arguments, or a scene alone, open the window.
+
+    Exit status: 0 done, 1 failed or refused, 2 typed wrongly, 130 interrupted.
     """
     if version:
         print(report.versions())
@@ -98,7 +100,7 @@ def info(scene: SceneName, frame: Frame = None,
          as_json: Annotated[bool, typer.Option("--json", help="The same for programs.")] = False) -> None:
     """Say what a scene holds.
 
-    Kind, size, counts, value range, spacing, exact solids, and what was repaired on reading.
+    Kind, size, counts, value range, spacing, exact solids, what was repaired on reading, and what to know of it.
     """
     from jaart.core.io import load
 
@@ -159,7 +161,7 @@ def render(
                                cancel=cancel)
         errors = quality(found, loaded) if loaded.model is not None or map_.endswith("_error") else None
         print(report.hits_line(found, loaded, errors))
-        report.say_notes(loaded, chosen)
+        report.say_notes(loaded, chosen, found)
         if output is not None:
             with report.progress_bar() as progress:
                 colours = finish(found, loaded, map_, errors, cancel=cancel, progress=progress, threads=threads)
@@ -228,7 +230,7 @@ def statistics(
         found = trace_rays(loaded, chosen, view, shape, threads=threads, progress=progress, cancel=cancel)
     errors = quality(found, loaded)
     print(report.hits_line(found, loaded, errors))
-    report.say_notes(loaded, chosen)
+    report.say_notes(loaded, chosen, found)
     files.write_statistics(found, errors, output)
 
 

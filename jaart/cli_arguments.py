@@ -127,10 +127,16 @@ def suit(scene: Scene, chosen: Settings, assignments: Sequence[str],
 
 def camera(assignments: Sequence[str], scene: Scene, chosen: Settings, size: tuple[int, int] = (1, 1)) -> Camera:
     """A camera with the whole scene in view, and what was typed on top."""
-    from jaart.core.camera import Camera, parse
+    from jaart.core.camera import Camera, check_distance, parse
+    from jaart.core.chosen import chosen as values_of
     from jaart.core.extents import bounds
 
-    return parse(assignments, Camera.fit(bounds(scene, chosen), size=size))
+    corners = bounds(scene, chosen)
+    view = parse(assignments, Camera.fit(corners, size=size))
+    cloud = scene.kind == "cloud"
+    check_distance(view, corners[0] / 2 + corners[1] / 2 if cloud else (0, 0, 0),
+                   values_of(scene, chosen).h if cloud else 1.0)
+    return view
 
 
 def pixel_ray(view: Camera, size: tuple[int, int], at: tuple[int, int]) -> Ray:

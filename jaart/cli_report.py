@@ -28,12 +28,18 @@ def versions() -> str:
 
 def scene_record(scene: Scene) -> dict[str, Any]:
     """What a scene holds, in plain numbers and words; lengths in cells, spacing and origin as in the file."""
-    if scene.kind == "cloud":
-        return _cloud_record(scene)
+    from jaart.core.errors import SettingsError
+    from jaart.core.notes import notes
     from jaart.core.settings import preset
     from jaart.core.suited import suited
 
-    return _lattice_record(scene, suited(scene, preset(DEFAULT_PRESET))[0])
+    try:
+        settings = suited(scene, preset(DEFAULT_PRESET))[0]
+        said = notes(scene, settings)
+    except SettingsError as error:  # a single point, which gives no length by default
+        settings, said = preset(DEFAULT_PRESET), (str(error),)
+    record = _cloud_record(scene) if scene.kind == "cloud" else _lattice_record(scene, settings)
+    return record | {"notes": list(dict.fromkeys((*scene.notes, *said)))}
 
 
 def _cloud_record(scene: Scene) -> dict[str, Any]:
@@ -46,7 +52,6 @@ def _cloud_record(scene: Scene) -> dict[str, Any]:
         "source": scene.source, "kind": scene.kind, "points": len(scene.points), "normals": scene.normals is not None,
         "duplicates": scene.merged, "low": low.tolist(), "high": high.tolist(),
         "diagonal": cloud.diagonal(scene), "spacing": cloud.spacing(scene), "auto_h": cloud.auto_h(scene),
-        "notes": list(scene.notes),
     }
 
 
@@ -62,7 +67,7 @@ def _lattice_record(scene: Scene, settings: Settings) -> dict[str, Any]:
         "interface_cells": int(interface.sum()), "surfels": len(surfels), "without_normal": surfels.without_normal,
         "levels": [float(levels.min()), float(levels.max())], "spacing": list(scene.spacing),
         "origin": list(scene.origin), "frame": scene.frame, "frames": scene.frames, "time": scene.time,
-        "solids": solids, "notes": list(scene.notes),
+        "solids": solids,
     }
 
 
@@ -134,11 +139,12 @@ def _taken(hits: Hits, scene: Scene) -> list[str]:
     return ["; ".join(parts)] if parts else []
 
 
-def say_notes(scene: Scene, settings: Settings) -> None:
-    """Say on stderr what a person should know of the scene with these settings."""
-    from jaart.core.notes import notes
+def say_notes(scene: Scene, settings: Settings, hits: Hits | None = None) -> None:
+    """Say on stderr what a person should know of the scene with these settings, and of how its rays ended."""
+    from jaart.core.notes import notes, of_hits
 
     note(notes(scene, settings))
+    note(() if hits is None else of_hits(scene, hits))
 
 
 def note(texts: Iterable[str]) -> None:

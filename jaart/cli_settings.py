@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 from jaart.cli_options import DEFAULT_PRESET
 from jaart.core.errors import SettingsError
-from jaart.core.parameter import KINDS, Parameter
+from jaart.core.parameter import KINDS, Parameter, shown
 from jaart.core.settings import PARAMETERS, PRESETS, Settings
 
 #: Characters of a line, and of the names before what is said of them.
@@ -70,10 +70,3 @@ def _beside(name: str, lines: list[str]) -> str:
     wrapped = [part for line in lines for part in textwrap.wrap(line, _WIDTH - _NAMES, break_on_hyphens=False)]
     first = f"  {name:<{_NAMES - 2}}{wrapped[0]}"
     return "\n".join([first, *(" " * _NAMES + line for line in wrapped[1:])]).replace("\N{NO-BREAK SPACE}", " ")
-
-
-def shown(value: object) -> str:
-    """A value as it may be typed."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from threading import Event
 
+    from jaart.core.study.stability.case import Result
+
 #: The studies there are.
 NAMES = ("stability",)
 
@@ -32,14 +34,22 @@ def check(name: str, output: Path) -> None:
 
 def run_stability(output: Path, quick: bool, cancel: Event, progress: Callable[[int, int], None] | None) -> int:
     """Run the stiff and extreme cases, print their table and save it; the exit status is 1 where one does not hold."""
-    from jaart.core.study.stability.case import HOLDS
     from jaart.core.study.stability.study import holding, save, stability
 
     results = stability(quick, progress, cancel)
+    print("case verdict  input: got")
     for result in results:
-        mark = "" if result.verdict == HOLDS else f"  [{result.verdict}: expected {result.expected}]"
-        print(f"{result.number:>3}  {result.verdict:<7}  {result.title}: {result.got}{mark}")
+        print(_line(result))
     for path in save(results, output):
         print(f"wrote {path}")
-    print(f"{holding(results)} of {len(results)} cases hold")
+    print(f"{holding(results)} of {len(results)} cases hold; {path} says what was expected of each, its last column "
+          "whether it came")
     return 0 if holding(results) == len(results) else 1
+
+
+def _line(result: Result) -> str:
+    """A case in a line; what was expected is said where something else came."""
+    from jaart.core.study.stability.case import HOLDS
+
+    expected = "" if result.verdict == HOLDS else f"; expected: {result.expected}"
+    return f"{result.number:>4} {result.verdict:<7}  {result.title}: {result.got}{expected}"

@@ -99,6 +99,15 @@ def test_wrong_usage_ends_with_2(capsys, arguments):
     (["render", "standard", "--set", "raduis=3"], "did you mean radius?"),
     (["render", "standard", "--set", "radius=-3"], "radius = '-3': expected"),
     (["render", "standard", "--set", "shading=diffuse", "ambient=0.2"], "ambient has no meaning beside"),
+    (["render", "standard", "--set", "proof=true"], "proof has no meaning beside the other settings; it needs search = "
+                                                    "safe"),
+    (["render", "standard", "--set", "search=safe", "proof=true"], "proof = true: bounds are known for the tangent"),
+    (["render", "standard", "--set", "search=safe", "proof=true"], "; expected method = tangent, not polynomial"),
+    (["render", "standard", "--camera", "eye=1e300,0,0"], "camera eye = 1e+300,0,0: rays from so far have no prec"),
+    (["render", "standard", "--camera", "eye=1e15,0,0"], "expected less than 1e+15 from the scene"),
+    (["trace", "bumpy", "--pixel", "1,1", "--camera", "eye=0,-1e20,0", "--output", "a.csv"], "have no precision"),
+    (["render", "standard", "--camera", "ortho=1e20"], "camera ortho = 1e+20: rays from so far"),
+    (["render", "standard", "--camera", "up=0,0,0"], "camera: up has zero length"),
     (["render", "splash", "--set", "raster=20"], "raster has no meaning in a lattice; it is for a model"),
     (["render", "standard", "--preset", "worst"], "no preset is called 'worst'"),
     (["render", "standard", "--map", "mood"], "no map is called 'mood'"),
@@ -141,7 +150,10 @@ def test_version_and_help(capsys):
     for arguments in (["-h"], ["--help"], ["render", "-h"], ["trace", "--help"], ["info", "-h"], ["gui", "-h"],
                       ["statistics", "-h"], ["settings", "-h"]):
         assert main(arguments) == 0
-        assert "Usage: jaart" in capsys.readouterr().out
+        said = capsys.readouterr().out
+        assert "Usage: jaart" in said
+        assert ("Exit status: 0 done, 1 failed or refused, 2 typed wrongly, 130 interrupted.\n" in said) == (
+            arguments in (["-h"], ["--help"]))
 
 
 def test_it_runs_as_a_module():
@@ -166,6 +178,15 @@ def test_info_says_what_a_scene_holds(capsys):
     table = capsys.readouterr().out
     for word in ("lattice", "64×64×64", "surfels", "spacing", "frame"):
         assert word in table
+
+
+def test_info_says_what_rays_would(capsys):
+    np.savez("full.npz", levels=np.ones((4, 5, 6)))
+    assert main(["info", "full.npz"]) == 0
+    table = capsys.readouterr().out
+    assert main(["render", "full.npz", "--size", "4x4", "--hits", "h.npz"]) == 0
+    notes = [line.removeprefix("jaart: note: ") for line in capsys.readouterr().err.splitlines() if "note: 0 surf" in line]
+    assert len(notes) == 1 and [line for line in table.splitlines() if line.split(maxsplit=1)[1] == notes[0]]
 
 
 def test_info_names_each_kind_of_solid_in_full(capsys):
@@ -245,6 +266,16 @@ def test_the_rays_of_a_picture_as_a_list_give_the_same_hits():
 def test_bad_rays_are_refused_by_array(capsys, arrays, said):
     np.savez("rays.npz", **arrays)
     assert said in fails(capsys, 1, "render", "standard", "--rays", "rays.npz", "--hits", "h.npz")
+
+
+def test_rays_that_are_none_are_counted_and_the_first_is_named(capsys):
+    directions = np.tile([0.0, 0, 1], (6, 1))
+    directions[1:] = 0
+    np.savez("rays.npz", origins=np.tile([8.0, 8, -3], (6, 1)), directions=directions)
+    assert main(["render", "standard", "--rays", "rays.npz", "--hits", "h.npz"]) == 0
+    assert "jaart: note: 5 of 6 rays are no rays (bad_ray), the first is number 1, counted from 0" in (
+        capsys.readouterr().err)
+    assert (np.load("h.npz")["status"] == STATUS_NAMES.index("bad_ray")).tolist() == [False] + 5 * [True]
 
 
 def test_truncated_rays_are_refused(capsys):
@@ -348,7 +379,8 @@ def test_settings_lists_every_name_with_its_help_and_every_preset(capsys):
 
 
 @pytest.mark.parametrize(("name", "said", "not_said"), [
-    ("radius", "> 0 and <= 1e+06 or auto, in cells or cloud units", "placement"), ("Cloud", "orient", "radius"),
+    ("radius", "auto, or a finite number > 0 and <= 1e+06, alone or followed by d (diagonals) or s (spacings), in cells or "
+     "cloud units", "placement"), ("Cloud", "orient", "radius"),
     ("raster", "for a model only", "h  "), ("thesis", "max_iterations=20 filling=corners", "default")])
 def test_settings_says_what_one_name_stands_for(capsys, name, said, not_said):
     assert main(["settings", name]) == 0

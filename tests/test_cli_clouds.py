@@ -52,11 +52,18 @@ def test_info_says_in_words_what_was_repaired(tmp_path, capsys):
         assert ["note", note] in rows
 
 
+def test_info_says_what_rays_would(tmp_path, capsys):
+    np.savez(tmp_path / "x.npz", points=fibonacci(5))
+    assert main(["info", str(tmp_path / "x.npz")]) == 0
+    assert "  note             ball_k = 6: there are only 4 other points" in capsys.readouterr().out.splitlines()
+
+
 def test_info_of_a_single_point(tmp_path, capsys):
     np.savez(tmp_path / "x.npz", points=[[1.0, 2, 3]])
     assert main(["info", str(tmp_path / "x.npz"), "--json"]) == 0
     record = json.loads(capsys.readouterr().out)
     assert (record["points"], record["spacing"], record["auto_h"], record["diagonal"]) == (1, 0, 0, 0)
+    assert len(record["notes"]) == 1 and record["notes"][0].endswith("no spacing; expected h as a number")
 
 
 def test_a_cloud_is_rendered_in_its_own_units_and_says_what_it_took(ball, capsys):
@@ -89,6 +96,29 @@ def test_the_thesis_s_lengths_are_left_out_in_a_cloud(ball, capsys):
     assert np.load("h.npz")["hit"].any()
     assert main(["render", ball, *SMALL, "--hits", "h.npz"]) == 0
     assert "left out" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("points", [np.linspace(-1, 1, 30)[:, None] * (1, 2, 3), np.full((2, 3), 0.5) + [[0], [1e-9]]])
+def test_points_without_a_surface_are_said_to_have_none(points, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    np.savez("line.npz", points=points)
+    assert main(["render", "line.npz", *SMALL, "--output", "a.png"]) == 0
+    out, err = capsys.readouterr()
+    count = int(out.split(" undefined_normal")[0].split()[-1])
+    assert count > 0 and out.startswith("40x30: 0 of 1200 rays hit")
+    assert (f"jaart: note: no normal is defined for {count} of the {count} rays that came near: points along a line or "
+            "in one place have no surface\n") in err
+
+
+def test_a_camera_is_refused_by_the_cloud_s_own_scale(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    np.savez("huge.npz", points=1e30 * fibonacci(500))
+    camera = ["--camera", "eye=0,-5e30,0", "target=0,0,0"]
+    assert main(["render", "huge.npz", *SMALL, *camera, "--hits", "h.npz"]) == 0
+    assert np.load("h.npz")["hit"].sum() > 50
+    capsys.readouterr()
+    assert main(["render", "huge.npz", *SMALL, "--camera", "eye=0,-1e46,0", "--hits", "h.npz"]) == 1
+    assert "rays from so far have no precision" in capsys.readouterr().err
 
 
 def test_what_was_done_to_normals_and_balls_is_said_once(tmp_path, monkeypatch, capsys):

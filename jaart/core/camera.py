@@ -25,6 +25,8 @@ Vector = tuple[float, float, float]
 DEFAULT_VIEW = (0.45, -1.0, 0.55)
 #: A picture has at most this many pixels along an edge.
 LONGEST_EDGE = 16384
+#: Rays from so far, in cells of a lattice or h of a cloud, have no precision left; the kernels call them bad.
+TOO_FAR = 1e15
 #: How much farther away a fitted camera stands than it must.
 MARGIN = 1.03
 
@@ -79,14 +81,14 @@ class Camera:
 
     def frame(self) -> tuple[Array, Array, Array]:
         """Unit vectors (right, up, forward). Raises RayError when eye, target and up give none."""
-        forward = np.subtract(self.target, self.eye)
-        length = np.linalg.norm(forward)
-        if length == 0:
+        forward = _scaled(np.divide(self.target, 2) - np.divide(self.eye, 2))
+        if not forward.any():
             raise RayError("camera: eye and target are the same point")
-        forward /= length
-        up = self.up
-        if up is None:
-            up = (0.0, 1.0, 0.0) if abs(forward[2]) > 0.999 else (0.0, 0.0, 1.0)
+        forward /= np.linalg.norm(forward)
+        chosen = (0.0, 1.0, 0.0) if abs(forward[2]) > 0.999 else (0.0, 0.0, 1.0)
+        up = _scaled(np.array(chosen if self.up is None else self.up))
+        if not up.any():
+            raise RayError("camera: up has zero length")
         right = np.cross(forward, up)
         if np.linalg.norm(right) <= 1e-9 * np.linalg.norm(up):
             raise RayError("camera: up runs along the view; expected another direction")
@@ -135,6 +137,24 @@ def check_size(size: tuple[int, int]) -> None:
     """Raise RayError when no picture has this (width, height)."""
     if not all(isinstance(n, int) and 1 <= n <= LONGEST_EDGE for n in size):
         raise RayError(f"size {size[0]}x{size[1]}: expected a width and a height from 1 to {LONGEST_EDGE}")
+
+
+def check_distance(camera: Camera, middle: Iterable[float], unit: float) -> None:
+    """Raise RayError for a camera whose rays begin so far away that they have no precision.
+
+    middle: of the scene; unit: a cell of a lattice, h of a cloud.
+    """
+    far = max(abs(e / unit - float(m) / unit) for e, m in zip(camera.eye, middle, strict=True))
+    for name, distance in (("eye", far), ("ortho", (camera.ortho or 0.0) / unit)):
+        if not distance < TOO_FAR:
+            value = camera.ortho if name == "ortho" else ",".join(f"{v:g}" for v in camera.eye)
+            raise RayError(f"camera {name} = {value}: rays from so far have no precision; expected less than "
+                           f"{TOO_FAR * unit:g} from the scene")
+
+
+def _scaled(vector: Array) -> Array:
+    """A vector times a power of 2, about 1 long: its square neither overflows nor vanishes."""
+    return np.ldexp(vector, -math.frexp(float(np.abs(vector).max()))[1])
 
 
 def _corners(scene: Scene | Vector | tuple[Array, Array]) -> tuple[Array, Array]:

@@ -8,17 +8,27 @@ from jaart.core.chosen import Chosen, chosen
 from jaart.core.errors import SettingsError
 from jaart.core.groups.search import STEPPING
 from jaart.core.groups.surface import ENERGIES, FITTED, MESHES
+from jaart.core.parameter import shown
 from jaart.core.scene import Scene
 from jaart.core.settings import PARAMETERS, Settings
 
 #: Searches that need to know on which side of the surface a point is.
 SIDED = ("march", "safe")
+#: What a proof of misses asks of the other settings.
+PROVEN = {"method": "tangent", "normal": "surfel", "search": "safe"}
 #: (name of the setting, whether it is refused, why and what was expected instead).
-Refusal = tuple[str, Callable[[Scene, Settings, Chosen], bool], str]
+Refusal = tuple[str, Callable[[Scene, Settings, Chosen], bool], str | Callable[[Chosen], str]]
 
 
 def _bare(scene: Scene) -> bool:
     return scene.kind == "cloud" and scene.normals is None
+
+
+def _unproven(values: Chosen) -> list[str]:
+    """In words, what a proof of misses asks for and is not so."""
+    found = [f"{name} = {word}, not {getattr(values, name)}" for name, word in PROVEN.items()
+             if getattr(values, name) != word]
+    return found + (["a neighbourhood other than knn"] if values.neighbourhood == "knn" else [])
 
 
 REFUSED: tuple[Refusal, ...] = (
@@ -43,10 +53,9 @@ REFUSED: tuple[Refusal, ...] = (
      "the points have no normals and orient = none; expected spanning_tree or a viewpoint"),
     ("search", lambda scene, s, c: _bare(scene) and s.orient == "none" and c.search in SIDED,
      "the points have no normals and orient = none; expected spanning_tree or a viewpoint"),
-    ("proof", lambda scene, s, c: s.proof and (c.search != "safe" or c.method != "tangent" or c.normal != "surfel"
-                                                or c.neighbourhood == "knn"),
-     "bounds are known for the tangent surface with the surfels' normals alone; expected method = tangent, "
-     "normal = surfel, search = safe, and a neighbourhood other than knn"),
+    ("proof", lambda scene, s, c: s.proof and bool(_unproven(c)),
+     lambda c: "bounds are known for the tangent surface with the surfels' normals alone; expected "
+     + ", and ".join(_unproven(c))),
     ("shading", lambda scene, s, c: _bare(scene) and s.orient == "none" and s.shading == "water",
      "the points have no normals and orient = none; expected spanning_tree or a viewpoint"),
 )
@@ -57,7 +66,8 @@ def check(scene: Scene, settings: Settings) -> Chosen:
     values = chosen(scene, settings)
     for name, refused, why in REFUSED:
         if refused(scene, settings, values):
-            raise SettingsError(f"{name} = {_shown(settings, values, name)}: {why}")
+            reason = why if isinstance(why, str) else why(values)
+            raise SettingsError(f"{name} = {_shown(settings, values, name)}: {reason}")
     return values
 
 
@@ -68,7 +78,7 @@ def check_names(names: Iterable[str], scene: Scene, settings: Settings) -> None:
         if scene.kind not in about.scenes:
             raise SettingsError(f"{name} has no meaning in a {scene.kind}; it is for a {' or a '.join(about.scenes)}")
         if not about.matters(settings):
-            raise SettingsError(f"{name} has no meaning beside the other settings")
+            raise SettingsError(f"{name} has no meaning beside the other settings; it needs {about.needs}")
 
 
 def needs_normals(scene: Scene, settings: Settings, values: Chosen) -> bool:
@@ -90,4 +100,4 @@ def steps(values: Chosen) -> bool:
 
 
 def _shown(settings: Settings, values: Chosen, name: str) -> str:
-    return str(getattr(values, name, getattr(settings, name)))
+    return shown(getattr(values, name, getattr(settings, name)))

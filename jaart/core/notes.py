@@ -8,6 +8,7 @@ from jaart.core import cloud, extents, prepare
 from jaart.core.chosen import Chosen, arrival, chosen
 from jaart.core.cloud_surfels import Points
 from jaart.core.collapse import collapsing
+from jaart.core.records import STATUS, Hits
 from jaart.core.scene import Scene
 from jaart.core.settings import PARAMETERS, Settings
 from jaart.core.surfels import Surfels
@@ -24,6 +25,35 @@ def notes(scene: Scene, settings: Settings) -> tuple[str, ...]:
     return (*found.notes, *_neighbours(scene, settings, values, len(found)), *_small_solids(scene, settings),
             *_feature_size(scene, settings, values, found), *collapsing(scene, settings, values),
             *_precision(scene, settings, values))
+
+
+def of_hits(scene: Scene, hits: Hits) -> tuple[str, ...]:
+    """What a person should know of how the rays of a scene ended: a line each, none where all is well."""
+    return (*_bad_rays(hits), *_without_normal(scene, hits))
+
+
+def _bad_rays(hits: Hits) -> tuple[str, ...]:
+    """Rays that are none."""
+    bad = np.flatnonzero(hits.status == STATUS["bad_ray"])
+    if not len(bad):
+        return ()
+    return (f"{len(bad)} of {len(hits)} rays {'is no ray' if len(bad) == 1 else 'are no rays'} (bad_ray), the first is "
+            f"number {bad[0]}, counted from 0; expected finite numbers, directions of some length, and origins that "
+            "are not so far that they have no precision",)
+
+
+def _without_normal(scene: Scene, hits: Hits) -> tuple[str, ...]:
+    """Most rays that came near end where no normal is defined."""
+    counts = hits.counts()
+    near = len(hits) - counts.get("background", 0) - counts.get("bad_ray", 0)
+    without = counts.get("undefined_normal", 0)
+    if 2 * without <= near:
+        return ()
+    own = scene.kind != "cloud" or scene.normals is not None
+    surfel = own and chosen(scene, hits.settings).normal == "surfel"
+    why = "normals that cancel each other out have no average" if surfel else \
+        "points along a line or in one place have no surface"
+    return (f"no normal is defined for {without} of the {near} rays that came near: {why}",)
 
 
 def _neighbours(scene: Scene, settings: Settings, values: Chosen, count: int) -> tuple[str, ...]:
@@ -78,8 +108,9 @@ def _precision(scene: Scene, settings: Settings, values: Chosen) -> tuple[str, .
     step, tolerance = float(np.spacing(largest)), arrival(settings, values)
     if step <= tolerance or not PARAMETERS["tolerance"].matters(settings):
         return ()
+    unit = "h" if values.h <= values.radius else "radii"
     return (f"coordinates up to {largest:.4g} are exact to {step:.2g}, and hits no more than that: the tolerance is "
-            f"{tolerance:.2g}",)
+            f"{settings.tolerance:g} {unit}, a length of {tolerance:.2g}",)
 
 
 def _only(count: int, noun: str) -> str:

@@ -46,8 +46,8 @@ class Parameter:
     group: its heading in the form; label, help: for people; unit: "" when it has none;
     source: the equation it enters; stage: the first stage that uses it (see STAGES);
     choices: of a choice, or words that stand for a value; low, high: bounds (low is excluded when
-    open_low); step: of a slider; when: whether the setting has a meaning beside the others; scenes: the
-    kinds of scenes in which it has one.
+    open_low); step: of a slider; when: whether the setting has a meaning beside the others; needs: which
+    others these are, in words; scenes: the kinds of scenes in which it has one.
     """
 
     name: str
@@ -65,6 +65,7 @@ class Parameter:
     open_low: bool = False
     step: float = 0.0
     when: Callable[[Any], bool] | None = None
+    needs: str = ""
     scenes: tuple[str, ...] = KINDS
 
     def check(self, value: Value) -> Value:
@@ -83,13 +84,16 @@ class Parameter:
         words = {"flag": "true or false", "vector": "x,y,z",
                  "vectors": "x,y,z or several of them apart by ;", "integer": "a whole number",
                  "number": "a finite number", "choice": "",
-                 "length": "a finite number, or one with d (diagonals) or s (spacings)"}[self.kind]
+                 "length": "a finite number"}[self.kind]
         bounds = []
         if self.low > -math.inf:
             bounds.append(f"{'>' if self.open_low else '>='} {self.low:g}")
         if self.high < math.inf:
             bounds.append(f"<= {self.high:g}")
         number = " ".join(w for w in (words, " and ".join(bounds)) if w)
+        if self.kind == "length":
+            first = f"{' or '.join(self.choices)}, or " if self.choices else ""
+            return f"{first}{number}, alone or followed by d (diagonals) or s (spacings)"
         return " or ".join(w for w in (number, *self.choices) if w)
 
     def matters(self, settings: Any) -> bool:
@@ -106,6 +110,13 @@ def declared(record: type) -> dict[str, Parameter]:
     """The parameters of a settings class, in the order they are declared."""
     return {f.name: Parameter(name=f.name, default=f.default, **f.metadata)
             for f in dataclasses.fields(record)}
+
+
+def shown(value: Value) -> str:
+    """A value as it may be typed."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _plain(text: Value) -> Value:

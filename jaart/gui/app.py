@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import signal
 import sys
+from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,13 +26,13 @@ SAMPLE = "splash"
 
 def run(source: str | PathLike[str] | None = None, settings: Settings | None = None, camera: Camera | None = None,
         pick: tuple[int, int] | None = None, screenshot: str | PathLike[str] | None = None,
-        frame: int | None = None) -> int:
+        frame: int | None = None, notes: Sequence[str] = ()) -> int:
     """Open the window and return the exit status when it closes.
 
     source: a file or a built-in name, the sample when None; settings: those of the first preset when None;
-    pick: pixel (x, y) of the picture;
-    screenshot: save the window there once everything is drawn, and end. Raises JaartError without a
-    display or a system library, for a scene that cannot be read, and, with screenshot, for any failure.
+    pick: pixel (x, y) of the picture; screenshot: save the window there once everything is drawn, and end;
+    notes: what to say beforehand, a line each. Raises JaartError without a display or a system library, for a scene
+    that cannot be read, and, with screenshot, for any failure.
     """
     check()
     logging.basicConfig(format="%(name)s: %(message)s")
@@ -66,6 +67,8 @@ def run(source: str | PathLike[str] | None = None, settings: Settings | None = N
         window.model.scene_changed.connect(lambda: window.model.pick(*pick), _once())
     interrupt = signal.signal(signal.SIGINT, signal.SIG_DFL)  # Qt's loop would not let Python answer Ctrl-C
     window.show()
+    for note in notes:
+        window.model.said.emit(note)
     window.model.open(source or SAMPLE, frame, camera)
     loop.exec()
     for process in beside:

@@ -123,7 +123,8 @@ class ImageView(QWidget):
             corner = QPointF(10, 10)
             if self.place_of(self.hovered).x() < 300 and self.place_of(self.hovered).y() < 200:
                 corner = QPointF(10, self.height() - 190)
-            rows = overlay.numbers(hits, model.quality, *self.hovered, model.kind)
+            sided = model.known is not None and model.known.sided
+            rows = overlay.numbers(hits, model.quality, *self.hovered, model.kind, sided)
             overlay.draw_lens(painter, corner, self.image, self.hovered, rows, model.theme)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:

@@ -15,7 +15,7 @@ from jaart.gui.actions import Actions
 from jaart.gui.docks import LATE, Area, Late, Loader, PanelDock
 from jaart.gui.form import column
 from jaart.gui.image_view import ImageView
-from jaart.gui.messages import Log, MessageBar
+from jaart.gui.messages import Log, MessageBar, NoteBar
 from jaart.gui.model import SceneModel
 from jaart.gui.parameters import Parameters
 from jaart.gui.status import Status
@@ -33,7 +33,7 @@ class MainWindow(QMainWindow):
         self.model = model or SceneModel()
         self.model.setParent(self)
         self.view = ImageView(self.model)
-        self.message = MessageBar(self.model)
+        self.message, self.notes = MessageBar(self.model), NoteBar(self.model)
         self.docks: dict[str, PanelDock] = {}
         self.panels_ready = self._shown = False
         self.loader = Loader(self)
@@ -41,8 +41,8 @@ class MainWindow(QMainWindow):
         self.setAcceptDrops(True)
         self.setDockOptions(self.dockOptions() | QMainWindow.DockOption.AllowNestedDocks)
         centre = QWidget()
-        centre.setLayout(column(self.message, self.view))
-        centre.layout().setStretch(1, 1)
+        centre.setLayout(column(self.message, self.notes, self.view))
+        centre.layout().setStretch(2, 1)
         self.setCentralWidget(centre)
         self.setStatusBar(Status(self.model))
         self._make_docks()

@@ -13,6 +13,7 @@ from jaart.core.scene import Scene
 from jaart.core.settings import PRESETS, Settings, preset
 from jaart.gui import navigation, results, tasks
 from jaart.gui.navigation import Bounds
+from jaart.gui.notes import Notes
 from jaart.gui.preparing import Preparing
 from jaart.gui.shader import Shader
 from jaart.gui.suit import refused_name, suited
@@ -71,7 +72,7 @@ class SceneModel(QObject):
         self.trace, self.step = None, 0  # type: Trace | None, int
         self._worker, self._painter = Worker(self), Worker(self)
         self.shader = Shader(self)
-        self._slow = Preparing(self)
+        self.notes, self._slow = Notes(self), Preparing(self)
         self._painter.failed.connect(self.failed)
         for worker in (self._worker, self.shader.worker):
             worker.progressed.connect(self.progressed)
@@ -225,9 +226,8 @@ class SceneModel(QObject):
         for signal in (self.scene_changed, self.camera_changed, self.hits_changed, self.picked_changed,
                        self.trace_changed):
             signal.emit()
-        for note in (*scene.notes, opened.changed):
-            if note:
-                self.said.emit(note)
+        if opened.changed:
+            self.said.emit(opened.changed)
         self._render()
 
     def _keep_view(self) -> None:
@@ -252,8 +252,6 @@ class SceneModel(QObject):
         if made.known != self.known:
             self.known = made.known
             self.known_changed.emit()
-            for note in made.known.notes:
-                self.said.emit(note)
         self._show(made.hits, made.quality)
 
     def _show(self, hits: Hits, quality: Quality | None) -> None:

@@ -103,11 +103,16 @@ def _draw_patch(painter: QPainter, box: QRectF, image: QImage, pixel: tuple[int,
     painter.drawRect(QRectF(box.left() + 4 * cell, box.top() + 4 * cell, cell, cell))
 
 
-def numbers(hits: Hits, quality: Quality | None, x: int, y: int, kind: str = "lattice") -> list[tuple[str, str]]:
-    """Name and text of each number of a pixel (x, y) of the picture. kind: of the scene."""
+def numbers(hits: Hits, quality: Quality | None, x: int, y: int, kind: str = "lattice",
+            sided: bool = False) -> list[tuple[str, str]]:
+    """Name and text of each number of a pixel (x, y) of the picture.
+
+    kind: of the scene; sided: whether normals point outwards, so that a hit may be one from behind.
+    """
     assert hits.size is not None
     at, of = x + y * hits.size[0], "units" if kind == "cloud" else "cells"
-    rows = [("Pixel", f"{x}, {y}"), ("Ray", OUTCOMES[STATUS_NAMES[hits.status[at]]])]
+    behind = ", from behind" if sided and hits.from_behind[at] else ""
+    rows = [("Pixel", f"{x}, {y}"), ("Ray", OUTCOMES[STATUS_NAMES[hits.status[at]]] + behind)]
     if hits.hit[at]:
         normal = ", ".join(f"{n:+.3f}" for n in hits.normal[at])
         rows += [("Depth t", f"{fixed(hits.t[at])} {of}"), ("Normal", normal),

@@ -45,6 +45,7 @@ class StepBar(QWidget):
         steps = 0 if trace is None else trace.steps
         self.position.setText(f"step {step + 1 if steps else 0} / {steps}")
         self.state.setText(self._state())
+        self.state.setToolTip(self.state.text())
         colours = THEMES[self.model.theme]
         self.signs.setText("&nbsp; ".join(
             f'<span style="color:{getattr(colours, kind)}">{sign}</span>&nbsp;{name.replace(" ", "&nbsp;")}'
@@ -66,9 +67,16 @@ class StepBar(QWidget):
         if trace is None:
             return "click a pixel in the picture"
         if not trace.steps:
-            return OUTCOMES[trace.status]
+            return OUTCOMES[trace.status] + self._behind()
         step = self.model.step
-        return f"start {trace.start[step] + 1} of {trace.start[-1] + 1}: {OUTCOMES[trace.outcome[step]]}"
+        last = self._behind() if step == self._last() else ""
+        return f"start {trace.start[step] + 1} of {trace.start[-1] + 1}: {OUTCOMES[trace.outcome[step]]}{last}"
+
+    def _behind(self) -> str:
+        """Whether the ray meets the surface from within, where normals say what that is."""
+        trace, known = self.model.trace, self.model.known
+        sided = trace is not None and trace.hit and known is not None and known.sided
+        return ", from behind" if sided and trace.normal @ trace.direction > 0 else ""
 
     def _last(self) -> int:
         return max(0, self.model.trace.steps - 1) if self.model.trace is not None else 0

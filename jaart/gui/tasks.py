@@ -33,13 +33,15 @@ class Opened:
 class Known:
     """What the settings come to in a scene.
 
-    spacing: the unit "s" of lengths; diagonal: the unit "d"; notes: what a person should know of it.
+    spacing: the unit "s" of lengths; diagonal: the unit "d"; notes: what a person should know of it; sided: whether
+    normals point outwards, and not to either side.
     """
 
     values: Chosen
     spacing: float
     diagonal: float
     notes: tuple[str, ...] = ()
+    sided: bool = False
 
 
 @dataclass(frozen=True)
@@ -91,10 +93,12 @@ def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tu
 
 def _known(scene: Scene, settings: Settings, values: Chosen) -> Known:
     from jaart.core import cloud, extents
+    from jaart.core.meaning import oriented
     from jaart.core.notes import notes
 
     spacing = cloud.spacing(scene) if scene.kind == "cloud" else 1.0
-    return Known(values, spacing, extents.diagonal(scene, settings), notes(scene, settings))
+    sided = values.normal == "surfel" or oriented(scene, settings, values)
+    return Known(values, spacing, extents.diagonal(scene, settings), notes(scene, settings), sided)
 
 
 def ray(scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int], pixel: tuple[int, int]) -> Trace:

@@ -75,5 +75,8 @@ def _sheet(c: dict[str, str]) -> str:
     #messages {{ background: {c['alarm_ground']}; border-bottom: 1px solid {c['alarm']}; }}
     #messages QLabel {{ color: {c['alarm']}; font-weight: 600; }}
     #messages QToolButton {{ color: {c['alarm']}; border: none; background: transparent; }}
+    #notes {{ background: {c['window']}; border-bottom: 1px solid {c['edge']}; }}
+    #notes QLabel {{ color: {c['weak']}; }}
+    #notes QToolButton {{ color: {c['weak']}; border: none; background: transparent; }}
     QLineEdit[fault="true"] {{ color: {c['alarm']}; }}
     """

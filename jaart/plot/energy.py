@@ -60,12 +60,14 @@ def draw_energy(axes: Axes, trace: Trace, step: int = 0, theme: str = "light", w
     _level(axes, trace, level, colours)
     style.title(axes, colours, _title(trace, step), raised=True)
     style.legend(axes, colours, loc="lower left", bbox_to_anchor=(0, 1), ncols=5)
+    if not (trace.steps or trace.hit or np.isfinite(trace.curves.tangent).any()):
+        style.note(axes, colours, scale.no_steps(trace))
     return _steps(axes, trace, step, colours)
 
 
 def _title(trace: Trace, step: int) -> str:
     if not trace.steps:
-        return f"{style.OUTCOMES[trace.status].capitalize()}: " + scale.no_steps(trace).replace("\n", " ")
+        return f"{style.OUTCOMES[trace.status].capitalize()}: {'hit at once' if trace.hit else 'no step was taken'}"
     return f"Step {step + 1}: {_value(trace, step)} at t = {scale.text(trace, trace.t_query[step], 3)}"
 
 

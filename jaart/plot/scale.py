@@ -12,6 +12,9 @@ from jaart.core.records import Trace
 
 Array = NDArray[np.float64]
 
+#: Why a ray can take no step, by the state that it ends in.
+_UNABLE = {"undefined_normal": "the normal is undefined", "few_neighbours": "no surfel is near"}
+
 
 def is_cloud(trace: Trace) -> bool:
     """Whether the ray goes through a cloud, and so through balls instead of cells."""
@@ -55,9 +58,17 @@ def stretches(trace: Trace) -> Array:
 
 
 def no_steps(trace: Trace) -> str:
-    """Why a ray has no step to show."""
+    """Why a ray has no step to show, in lines."""
     if trace.hit:
         return "This surface is hit at once:\nno step is taken."
-    where = "pierces no ball" if is_cloud(trace) else "crosses no cell with a surfel"
-    return f"This ray {where}:\nno step was taken." if not len(trace.curves.t) or not np.isfinite(
-        trace.curves.tangent).any() else "This ray misses the surface:\nno step was taken."
+    count, none = len(trace.balls) or int(trace.with_surfel.sum()), "no step was taken."
+    passed = f"pierces {_some(count, 'ball')}" if is_cloud(trace) else f"crosses {_some(count, 'cell')} with a surfel"
+    near = bool(np.isfinite(trace.curves.tangent).any())
+    if trace.status in _UNABLE:
+        return (f"This ray {passed},\n{'but' if count else 'and'} {_UNABLE[trace.status]} "
+                f"{'in places' if near else 'there'}:\n{none}")
+    return f"This ray {'misses the surface' if near or count else passed}:\n{none}"
+
+
+def _some(count: int, thing: str) -> str:
+    return f"{count or 'no'} {thing}{'' if count <= 1 else 's'}"

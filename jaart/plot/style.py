@@ -132,6 +132,12 @@ def say(axes: Axes, theme: Theme, message: str) -> None:
               color=theme.muted)
 
 
+def note(axes: Axes, theme: Theme, message: str) -> None:
+    """A message in the middle of a plot, readable over it."""
+    axes.text(0.5, 0.5, message, transform=axes.transAxes, ha="center", va="center", fontsize=TEXT, zorder=10,
+              color=theme.text, bbox={"facecolor": theme.face, "edgecolor": theme.cell, "alpha": 0.9, "linewidth": 0.7})
+
+
 def label(axes: Axes, texts: Iterable[tuple[float, float, str, str]], apart: float = 15.0) -> None:
     """Short labels (x, y, text, colour) in order of importance, left out where they would overlap.
 

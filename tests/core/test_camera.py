@@ -10,7 +10,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from jaart.core.camera import Camera, parse
+from jaart.core.camera import Camera, check_distance, parse
 from jaart.core.errors import RayError
 
 FRONT = Camera(eye=(0, -10, 0), target=(0, 0, 0), fov=90)
@@ -93,7 +93,7 @@ def test_fit_sees_all_corners(extent: tuple[float, float, float], direction: tup
 
 
 @pytest.mark.parametrize(("values", "says"), [
-    ({"target": (0, -10, 0)}, "same point"), ({"up": (0, 1, 0)}, "up runs along the view"), ({"up": (0, 0, 0)}, "up"),
+    ({"target": (0, -10, 0)}, "same point"), ({"up": (0, 1, 0)}, "up runs along the view"), ({"up": (0, 0, 0)}, "up has zero length"),
     ({"fov": 0.0}, "fov = 0"), ({"fov": 180.0}, "fov = 180"), ({"fov": math.nan}, "fov = nan"),
     ({"ortho": 0.0}, "ortho = 0"), ({"ortho": math.inf}, "ortho = inf"), ({"eye": (0, 0)}, "three numbers"),
     ({"eye": (0, 0, math.nan)}, "finite"),
@@ -102,6 +102,23 @@ def test_a_camera_that_sees_nothing_is_refused(values: dict[str, object], says: 
     with pytest.raises(RayError) as error:
         FRONT.replace(**values)
     assert says in str(error.value)
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-30, 1e200, 1.7e308])
+def test_any_finite_view_has_a_frame(size: float) -> None:
+    camera = Camera(eye=(0, -size, 0), target=(0, size, 0), up=(0, 0, size))
+    assert np.array(camera.frame()).tolist() == [[1, 0, 0], [0, 0, 1], [0, 1, 0]]
+
+
+def test_eyes_and_views_beyond_precision_are_refused() -> None:
+    near = FRONT.replace(eye=(0, -9.9e14, 0))
+    check_distance(near, (0, 0, 0), 1.0)
+    check_distance(near.replace(eye=(0, -1e20, 0)), (0, 0, 0), 1e6)
+    for camera, name in ((near.replace(eye=(0, -1e15, 0)), "eye = 0,-1e"), (near.replace(ortho=1e15), "ortho = 1e")):
+        with pytest.raises(RayError, match=f"camera {name}.*rays from so far have no precision"):
+            check_distance(camera, (0, 0, 0), 1.0)
+    with pytest.raises(RayError, match=r"expected less than 1e\+09 from the scene"):
+        check_distance(near, (0, 0, 0), 1e-6)
 
 
 def test_parse() -> None:

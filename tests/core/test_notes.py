@@ -10,7 +10,7 @@ import pytest
 from jaart.core import prepare
 from jaart.core.errors import SettingsError
 from jaart.core.io import load
-from jaart.core.notes import notes
+from jaart.core.notes import notes, of_hits
 from jaart.core.render import render
 from jaart.core.samples import fibonacci
 from jaart.core.scene import Model, Scene
@@ -152,12 +152,42 @@ def test_normals_that_are_not_defined_are_said() -> None:
 def test_a_tolerance_below_what_coordinates_can_tell() -> None:
     far, settings = sphere(at=1e9), Settings(h=0.4, tolerance=1e-9)
     assert notes(far, settings) == ("coordinates up to 1e+09 are exact to 1.2e-07, and hits no more than that: the "
-                                    "tolerance is 4e-10",)
+                                    "tolerance is 1e-09 h, a length of 4e-10",)
     assert notes(far, settings.replace(tolerance=1e-6)) == ()
     assert notes(far, Settings(h=0.4, tolerance=0.0, search="centres")) == ()
+    assert notes(far, settings.replace(radius=0.2))[-1].endswith("the tolerance is 1e-09 radii, a length of 2e-10")
     assert "the tolerance is 0" in notes(sphere(), Settings(tolerance=0.0))[0]
 
 
 def test_settings_that_make_no_sense_are_refused_as_by_rays() -> None:
     with pytest.raises(SettingsError, match="too small for coordinates"):
         notes(sphere(), Settings(h=1e-160))
+
+
+def test_rays_that_meet_no_normal_are_counted() -> None:
+    line, ways = Scene("line", points=np.linspace(-1, 1, 30)[:, None] * (1, 2, 3)), fibonacci(12)
+    found = render(line, Settings(h=0.5), rays=(0.05 * ways[::-1] - 3 * ways, ways))
+    assert of_hits(line, found) == ("no normal is defined for 12 of the 12 rays that came near: points along a line or "
+                                    "in one place have no surface",)
+    away = render(line, Settings(h=0.5), rays=(ways + 50, ways))
+    assert away.counts() == {"background": 12} and of_hits(line, away) == ()
+
+
+def test_normals_that_cancel_out_are_told_from_points_without_a_surface() -> None:
+    square = np.stack((*(a.ravel() for a in np.mgrid[-3:4, -3:4]), np.zeros(49)), axis=1).astype(float)
+    pair = Scene("pair", points=np.concatenate((square + (0, 0, 1), square - (0, 0, 1))),
+                 normals=np.repeat([[0, 0, 1.0], [0, 0, -1.0]], 49, axis=0))
+    flat = np.stack((np.cos(np.arange(6)), np.sin(np.arange(6)), np.zeros(6)), axis=1)
+    settings = Settings(h=2.0, search="safe", max_nearest="none", max_off_centre="none")
+    found = render(pair, settings, rays=(0.1 * flat, flat))
+    assert found.counts() == {"undefined_normal": 6}
+    assert of_hits(pair, found)[0].endswith("6 of the 6 rays that came near: normals that cancel each other out have "
+                                            "no average")
+
+
+def test_bad_rays_are_counted_and_nothing_is_said_of_good_ones() -> None:
+    eyes, ways = np.tile((0.1, 0.2, 9.0), (4, 1)), np.tile((0, 0, -1.0), (4, 1))
+    assert of_hits(sphere(), render(sphere(), rays=(eyes, ways))) == ()
+    ways[2] = 0
+    (said,) = of_hits(sphere(), render(sphere(), rays=(eyes, ways)))
+    assert said.startswith("1 of 4 rays is no ray (bad_ray), the first is number 2, counted from 0; expected finite")

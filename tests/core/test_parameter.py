@@ -52,6 +52,12 @@ def test_bounds_are_kept_and_named() -> None:
         make("length", low=0.5).check("0.49")
 
 
+def test_what_a_length_may_be_is_said_in_order() -> None:
+    assert make("length", choices=("auto", "none"), low=0, high=5, open_low=True).expected == (
+        "auto or none, or a finite number > 0 and <= 5, alone or followed by d (diagonals) or s (spacings)")
+    assert make("length").expected == "a finite number, alone or followed by d (diagonals) or s (spacings)"
+
+
 def test_a_word_may_stand_for_a_value() -> None:
     assert make("integer", choices=("file",)).check("file") == "file"
     assert make("choice", choices=("6", "26")).check("26") == "26"

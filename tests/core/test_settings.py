@@ -15,6 +15,7 @@ def test_every_parameter_is_fully_declared() -> None:
     for name, p in PARAMETERS.items():
         assert p.name == name and p.label and p.group and p.help.endswith("."), name
         assert p.stage in STAGES, name
+        assert bool(p.needs) == (p.when is not None), name
         assert p.check(p.default) == p.default, name
         assert not p.choices or p.kind in ("choice", "length", "number", "integer", "vector", "vectors"), name
 

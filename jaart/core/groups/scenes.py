@@ -26,7 +26,7 @@ class LatticeSettings:
              "smooth: central differences after a Gauss filter of width σ.")
     smoothing: float = parameter(
         "number", 0.8, low=0, open_low=True, high=10, step=0.05, unit="cells", group="Lattice", label="Smoothing σ",
-        stage="surfels", scenes=LATTICES, when=lambda s: s.gradient in ("smooth"),
+        stage="surfels", scenes=LATTICES, when=lambda s: s.gradient in ("smooth"), needs="gradient = smooth",
         help="Width of the Gauss filter before the gradient.")
     neighbours: str = parameter(
         "choice", "6", choices=("6", "26"), group="Lattice", label="Interface rule", stage="surfels",
@@ -59,6 +59,7 @@ class ModelSettings:
     subdivision: int = parameter(
         "integer", 20, low=1, high=100, step=1, group="Model", label="Sub-cells", stage="levels", scenes=("model",),
         source="[T §3.3.3]", when=lambda s: s.filling == "corners",
+        needs="filling = corners",
         help="Sub-cells along each edge of an interface cell when a model is filled by corners.")
 
 

@@ -39,26 +39,28 @@ class ShadingSettings:
                                             "at the eye.")
     ambient: float = parameter(
         "number", 0.15, low=0, high=1, step=0.05, group="Shading", label="Ambient", stage="shade",
-        source="[T 2.4]", when=_phong, help="Light that reaches every point.")
+        source="[T 2.4]", when=_phong, needs="shading = phong", help="Light that reaches every point.")
     diffuse: float = parameter(
         "number", 0.75, low=0, high=1, step=0.05, group="Shading", label="Diffuse", stage="shade",
-        source="[T 2.4]", when=_phong, help="Light scattered evenly, by the angle of light and normal.")
+        source="[T 2.4]", when=_phong, needs="shading = phong",
+        help="Light scattered evenly, by the angle of light and normal.")
     specular: float = parameter(
         "number", 0.3, low=0, high=1, step=0.05, group="Shading", label="Specular", stage="shade",
-        source="[T 2.4]", when=_lit, help="Light reflected towards the eye.")
+        source="[T 2.4]", when=_lit, needs="shading = phong or water", help="Light reflected towards the eye.")
     shininess: float = parameter(
         "number", 30.0, low=1, high=1000, step=1, group="Shading", label="Shininess", stage="shade",
-        source="[T 2.4]", when=_lit, help="How narrow the highlight is.")
+        source="[T 2.4]", when=_lit, needs="shading = phong or water", help="How narrow the highlight is.")
     shadows: bool = parameter(
         "flag", False, group="Shading", label="Shadows", stage="shade", source="[T §2.1.2; A 12]",
         when=lambda s: s.shading == "phong" and s.light != "headlight",
+        needs="shading = phong and a light other than headlight",
         help="A ray to each light asks whether anything stands between.")
     depth: int = parameter(
         "integer", 6, low=0, high=64, step=1, group="Shading", label="Depth", stage="shade",
-        source="[T §2.1.2]", when=_water, help="How often a ray may be mirrored or bent.")
+        source="[T §2.1.2]", when=_water, needs="shading = water", help="How often a ray may be mirrored or bent.")
     ior: float = parameter(
         "number", 1.33, low=1, high=4, step=0.01, group="Shading", label="Index of refraction", stage="shade",
-        source="[T §2.1.2]", when=_water, help="By Snell's law; 1.33 is water.")
+        source="[T §2.1.2]", when=_water, needs="shading = water", help="By Snell's law; 1.33 is water.")
     samples: int = parameter(
         "integer", 1, low=1, high=8, step=1, group="Shading", label="Samples a pixel", stage="rays",
         source="[T §2.1.2]", help="So many rays along each edge of a pixel are averaged; 1 = none.")

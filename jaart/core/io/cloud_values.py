@@ -72,7 +72,8 @@ def _unit(source: str, normals: Array, count: int) -> tuple[Array, tuple[str, ..
     length = np.sqrt((scaled * scaled).sum(axis=1))
     with np.errstate(over="ignore"):
         off = int((np.abs(length * largest - 1) > ROUGHLY_UNIT).sum())
-    return scaled / length[:, None], (f"{off} normals were scaled to length 1",) if off else ()
+    said = f"{off} {'normal was' if off == 1 else 'normals were'} scaled to length 1"
+    return scaled / length[:, None], (said,) if off else ()
 
 
 def _refuse(source: str, place: str, values: Array, bad: NDArray[np.bool_], expected: str) -> None:

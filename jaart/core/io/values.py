@@ -58,9 +58,12 @@ def fill_levels(path: Path, place: str, values: NDArray[Any]) -> tuple[Array, tu
     notes = []
     excess = np.maximum(-values, values - 1)
     if (outside := excess > 0).any():
-        notes.append(f"{outside.sum()} levels up to {excess.max():.2g} outside [0, 1] were clipped")
+        one = outside.sum() == 1
+        notes.append(f"{outside.sum()} level{'' if one else 's'} up to {excess.max():.2g} outside [0, 1] "
+                     f"{'was' if one else 'were'} clipped")
     if (film := (excess < 0) & (excess >= -RESIDUE)).any():
-        notes.append(f"{film.sum()} levels within {RESIDUE:g} of 0 or 1 count as empty or full")
+        notes.append(f"{film.sum()} {'level' if film.sum() == 1 else 'levels'} within {RESIDUE:g} of 0 or 1 "
+                     f"{'counts' if film.sum() == 1 else 'count'} as empty or full")
     return frozen(np.where(excess >= -RESIDUE, np.rint(np.clip(values, 0, 1)), values)), tuple(notes)
 
 

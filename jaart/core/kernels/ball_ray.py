@@ -21,8 +21,9 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.leaving import Leave, counting, leave
 from jaart.core.kernels.log import end_log
 from jaart.core.kernels.near import surfels_near
-from jaart.core.kernels.ray import added, has_hit, is_bad, no_hit, visiting, write_end
+from jaart.core.kernels.ray import added, is_bad, no_hit, visiting, write_end
 from jaart.core.kernels.records import Array, Out, Plan, RayEnd, Sites, Start, Vector
+from jaart.core.kernels.stretch import has_hit
 from jaart.core.kernels.tree import Tree, span
 from jaart.core.kernels.unowned import unowned, unowned_sites
 from jaart.core.kernels.vectors import along, dot
@@ -97,6 +98,20 @@ def push_children(balls: Balls, node: int, o: Vector, d: Vector, inverse: Vector
 
 
 @kernel(STRICT)
+def next_item(balls: Balls, o: Vector, d: Vector, inverse: Vector, limit: float, keys: Array, items: Ints,
+              size: int) -> tuple[int, int]:
+    """The heap's size, and the nearest ball or promise before a limit; NOTHING for none, ROOM for a full heap."""
+    while size > 0 and keys[0] < limit:
+        if size > keys.shape[0] - _LEAF_ROOM:
+            return size, ROOM
+        size = pop(keys, items, size)
+        if items[size] >= 0:
+            return size, items[size]
+        size = push_children(balls, -1 - items[size], o, d, inverse, keys, items, size)
+    return size, NOTHING
+
+
+@kernel(STRICT)
 def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, begin: Leave, number: int) -> Start:
     """Where the search of a ball begins: at its promise, NaN for none, or at its near side for a stretch.
 
@@ -150,22 +165,18 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
     if is_bad(in_units(balls.tree, o, plan.rule.h), d):
         return no_hit(r.BAD_RAY)
     inverse = (1.0 / d[0], 1.0 / d[1], 1.0 / d[2])
-    count, room = balls.centres.shape[0], keys.shape[0] - _LEAF_ROOM
+    count = balls.centres.shape[0]
     end, best, visited, number = no_hit(r.BACKGROUND), no_hit(r.BACKGROUND), 0, 0
     found, limit, first, slack = False, inf, inf, _SAME_SHEET * plan.rule.h
     begin = Leave(0.0, _NOT_ASKED, nan)
     enter, leave = span(balls.tree.low, balls.tree.high, 0, o, inverse)
     size = push(keys, items, 0, -2.0, -1) if enter <= leave and leave > 0.0 else 0
-    while size > 0 and keys[0] < limit:
-        if size > room:
-            return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, nan, 0, ROOM)
-        size = pop(keys, items, size)
-        item = items[size]
-        if item < 0:
-            size = push_children(balls, -1 - item, o, d, inverse, keys, items, size)
-            continue
+    while True:
+        size, item = next_item(balls, o, d, inverse, limit, keys, items, size)
+        if item == NOTHING:
+            break
         ball = item if item < count else item - count
-        if balls.slot[ball] < 0 or balls.slot[ball] >= balls.ready:
+        if item == ROOM or balls.slot[ball] < 0 or balls.slot[ball] >= balls.ready:
             return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, nan, 0, ball)
         if begin.used < 0 and begin.t == 0.0 and holds(balls, ball, o):
             begin = leaving(balls, plan, ball, o, d, work, fit)

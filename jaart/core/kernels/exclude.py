@@ -124,8 +124,9 @@ def weight_bound(rule: Rule, middle: Middle, square: float, t: float, half: floa
         turn = exp_minus(bend)
         w = exp_minus(max(y - middle.least, 0.0))
         low, high = w * turn, w / turn
-        unsure = _ROUNDING * (4.0 + y + middle.least) + 4.0 * slack / (rule.h * rule.h)
-        low, high = low * (1.0 - unsure), high * (1.0 + unsure)
+        unsure = _ROUNDING * (4.0 + y + middle.least + bend) + 4.0 * slack / (rule.h * rule.h)
+        low = low * (1.0 - unsure) if y - middle.least + bend < _STEEPEST else 0.0  # exp_minus ends at 1e-308
+        high *= 1.0 + unsure
     else:
         end = rule.h * WENDLAND_END if rule.weight == r.WENDLAND else rule.h
         if nearest > end * end:
@@ -203,6 +204,8 @@ def exclude(near: Near, base: Vector, d: Vector, low: float, high: float, rule: 
     Returns the s from which on it could not be proven, NaN where all was, and how many pieces were looked at. A piece
     that cannot be excluded is halved; after one that could the next is twice as long.
     """
+    if not low <= high:
+        return 0.0, 0
     s, size, pieces = low, high - low, 0
     while s < high:
         end = min(s + size, high)

@@ -112,8 +112,8 @@ def root_between(what: int, sites: Sites, rule: Rule, how: Search, d: Vector, st
     evaluations it took.
 
     width: how close the bracket must get, and f to 0 where that is looked for; until: stop as well where f has the
-    other sign than this, NaN for never. The q of a root of f is NaN where the normal changes its side, or is not defined: f jumps over 0 there and has no
-    root.
+    other sign than this, NaN for never. The q of a root of f is NaN where the normal changes its side, or is not
+    defined: f jumps over 0 there and has no root.
     """
     a, b, c = low, high, low
     looks, evaluations, share, lost = 0, 0, 0.5, False

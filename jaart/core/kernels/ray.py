@@ -16,6 +16,7 @@ from jaart.core.kernels.log import end_log
 from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.place import centre_of
 from jaart.core.kernels.records import Array, Cell, Cells, End, Out, Plan, RayEnd, Start, Vector
+from jaart.core.kernels.stretch import has_hit
 from jaart.core.kernels.traversal import Axes, advance, axes_of, cell_at, clip, inside, start_at
 from jaart.core.kernels.unowned import unowned, unowned_cells
 from jaart.core.kernels.vectors import along
@@ -45,8 +46,11 @@ def no_hit(state: int) -> RayEnd:
 
 @kernel(STRICT)
 def added(before: RayEnd, end: End) -> RayEnd:
-    """A ray's end after one more start. A stretch without any surface leaves the state as it was."""
-    state = before.state if end.state == r.BACKGROUND else end.state
+    """A ray's end after one more start. A stretch without any surface leaves the state as it was, and only a hit ends
+    doubt.
+    """
+    doubtful = before.state == r.UNDECIDED and not has_hit(end.state)
+    state = before.state if doubtful or end.state == r.BACKGROUND else end.state
     return RayEnd(state, end.t, end.point, end.n, end.energy, end.off, end.steps,
                   before.evaluations + end.evaluations, before.used + end.used, before.cells,
                   before.lowered + end.lowered, end.gap, before.rows + end.steps, before.missing)
@@ -57,12 +61,6 @@ def visiting(end: RayEnd, cells: int) -> RayEnd:
     """A ray's end with so many cells or balls visited."""
     return RayEnd(end.state, end.t, end.point, end.n, end.energy, end.off, end.iterations, end.evaluations, end.used,
                   cells, end.lowered, end.gap, end.rows, end.missing)
-
-
-@kernel(STRICT)
-def has_hit(state: int) -> bool:
-    """Whether a state is a hit."""
-    return state == r.CONVERGED or state == r.FLOOR
 
 
 class Way(NamedTuple):

@@ -16,7 +16,7 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.probe import F_SLOPE, F, Look, closest, look, opposite, root_between
 from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, Start, Vector
-from jaart.core.kernels.stretch import fewer, hit_at, jumps, nothing_found, state_of
+from jaart.core.kernels.stretch import fewer, has_hit, hit_at, jumps, nothing_found, state_of
 from jaart.core.kernels.vectors import dot
 from jaart.core.kernels.weigh import fineness
 
@@ -68,6 +68,41 @@ def is_rough(a: Look, b: Look, step: float, h: float) -> bool:
 
 
 @kernel(STRICT)
+def root_in(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector, start: Start, low: Look, high: Look,
+            before: End, rows: Array, row: int, work: Array, fit: Array) -> End:
+    """The end of a stretch with the root between two looks, if there is one that keeps the bounds.
+
+    before: the end without it; row: of the stretch's first look in the log.
+    """
+    if not opposite(low.f, high.f):
+        return before
+    hit, looks, spent = root_between(F, sites, rule, how, d, start, low, high, how.arrived, nan, rows,
+                                     row + before.steps, work, fit)
+    looks, spent = before.steps + looks, before.evaluations + spent
+    used = spent * int(surfels_near(sites, start.cell).size)
+    if hit.q != hit.q:
+        return nothing_found(before.state, looks, spent, used, before.lowered, nan)
+    arrived = how.arrived > closest(hit.s, rule.h) or how.arrived > 0.0 == hit.f
+    return hit_at(r.CONVERGED if arrived else r.FLOOR, sites, rule, how, bounds, d, start, hit.s, hit.value, hit.f,
+                  looks, spent, used, before.lowered, work, fit)
+
+
+@kernel(STRICT)
+def proven(sites: Sites, rule: Rule, bounds: Bounds, d: Vector, start: Start, end: End) -> End:
+    """The end of a stretch without a hit, undecided where it cannot be proven that none is there.
+
+    What the off-centre bound refused is proven with the rest; what another bound refused keeps its name.
+    """
+    if end.state != r.BACKGROUND and end.state != r.BOUNDED:
+        return end
+    near = surfels_near(sites, start.cell)
+    doubtful, pieces = exclude(near, start.base, d, start.low, start.high, rule, bounds.off_centre)
+    spent = end.evaluations + pieces
+    return nothing_found(r.UNDECIDED if doubtful == doubtful else end.state, end.steps, spent, spent * int(near.size),
+                         end.lowered, end.f)
+
+
+@kernel(STRICT)
 def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector, start: Start, rows: Array, row: int,
                 work: Array, fit: Array) -> End:
     """The first surface within a stretch; arguments as of `step_search`."""
@@ -75,51 +110,35 @@ def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
     if surfels == 0:
         return nothing_found(r.BACKGROUND, 0, 0, 0, 0, nan)
     count = max(int(ceil((start.high - start.low) / (_STEP * fineness(rule.weight, rule.h)))), 1)
-    state, looks, evaluations, lowered = r.BACKGROUND, 0, 0, 0
     a = look(F_SLOPE, sites, rule, how, d, start, start.low, rows, row, work, fit)
-    looks, evaluations, lowered = 1, a.evaluations, fewer(a, rule)
+    end = nothing_found(r.BACKGROUND, 1, a.evaluations, a.evaluations * surfels, fewer(a, rule), a.f)
     if jumps(start.before, a.f, rule.h):
-        end = hit_at(r.FLOOR, sites, rule, how, bounds, d, start, a.s, a.value, a.f, looks, evaluations,
-                     evaluations * surfels, lowered, work, fit)
-        if end.state == r.FLOOR:
-            return end
-        state, evaluations = end.state, end.evaluations
+        end = hit_at(r.FLOOR, sites, rule, how, bounds, d, start, a.s, a.value, a.f, 1, a.evaluations, end.used,
+                     end.lowered, work, fit)
     longest = (start.high - start.low) / count
     size = longest
-    while a.s < start.high:
+    while a.s < start.high and not has_hit(end.state):
         s = a.s + size
         s = s if s < start.high - 1e-9 * longest else start.high
-        b = look(F_SLOPE, sites, rule, how, d, start, s, rows, row + looks, work, fit)
-        looks, evaluations, lowered = looks + 1, evaluations + b.evaluations, lowered + fewer(b, rule)
-        if is_rough(a, b, longest, rule.h):
-            size = 0.5 * (b.s - a.s)
+        b = look(F_SLOPE, sites, rule, how, d, start, s, rows, row + end.steps, work, fit)
+        inner, looks, spent = b, 1, b.evaluations
+        rough = is_rough(a, b, longest, rule.h)
+        if not rough and may_dip(a, b):
+            inner, looks, spent = root_between(F_SLOPE, sites, rule, how, d, start, a, b, _EXTREMUM * rule.h, a.f, rows,
+                                               row + end.steps + 1, work, fit)
+            looks, spent = looks + 1, spent + b.evaluations
+        spent += end.evaluations
+        end = nothing_found(end.state, end.steps + looks, spent, spent * surfels, end.lowered + fewer(b, rule), b.f)
+        size = 0.5 * (b.s - a.s) if rough else min(2.0 * size, longest)
+        if rough:
             continue
-        size = min(2.0 * size, longest)
-        inner = b
-        if may_dip(a, b):
-            inner, more, spent = root_between(F_SLOPE, sites, rule, how, d, start, a, b, _EXTREMUM * rule.h, a.f, rows,
-                                              row + looks, work, fit)
-            looks, evaluations = looks + more, evaluations + spent
-        for side in range(2):  # the way out of a dip counts where the way in is refused
-            low, high = (a, inner) if side == 0 else (inner, b)
-            if not opposite(low.f, high.f):
-                continue
-            hit, more, spent = root_between(F, sites, rule, how, d, start, low, high, how.arrived, nan, rows,
-                                            row + looks, work, fit)
-            looks, evaluations = looks + more, evaluations + spent
-            if hit.q != hit.q:
-                continue
-            arrived = how.arrived > closest(hit.s, rule.h) or how.arrived > 0.0 == hit.f
-            end = hit_at(r.CONVERGED if arrived else r.FLOOR, sites, rule, how, bounds, d, start, hit.s, hit.value,
-                         hit.f, looks, evaluations, evaluations * surfels, lowered, work, fit)
-            if end.state == r.CONVERGED or end.state == r.FLOOR:
-                return end
-            state, evaluations = end.state, end.evaluations
-        if b.value.state != r.CONTINUE:
-            state = state_of(b.value, state)
+        end = root_in(sites, rule, how, bounds, d, start, a, inner, end, rows, row, work, fit)
+        if not has_hit(end.state):  # the way out of a dip counts where the way in is refused
+            end = root_in(sites, rule, how, bounds, d, start, inner, b, end, rows, row, work, fit)
+        if b.value.state != r.CONTINUE and not has_hit(end.state):
+            end = nothing_found(state_of(b.value, end.state), end.steps, end.evaluations, end.used, end.lowered, b.f)
         a = b
-    if how.proof == 1 and state == r.BACKGROUND:
-        doubtful, more = exclude(surfels_near(sites, start.cell), start.base, d, start.low, start.high, rule,
-                                 bounds.off_centre)
-        state, evaluations = r.UNDECIDED if doubtful == doubtful else state, evaluations + more
-    return nothing_found(state, looks, evaluations, evaluations * surfels, lowered, a.f)
+    if has_hit(end.state):
+        return end
+    end = nothing_found(end.state, end.steps, end.evaluations, end.used, end.lowered, a.f)
+    return end if how.proof == 0 else proven(sites, rule, bounds, d, start, end)

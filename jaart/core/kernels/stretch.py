@@ -18,6 +18,12 @@ _JUMP = 0.1
 
 
 @kernel(STRICT)
+def has_hit(state: int) -> bool:
+    """Whether a state is a hit."""
+    return state == r.CONVERGED or state == r.FLOOR
+
+
+@kernel(STRICT)
 def jumps(before: float, after: float, h: float) -> bool:
     """Whether f jumps over 0 as it may where a stretch begins and other surfels count, not as a turned normal does."""
     return opposite(before, after) and min(abs(before), abs(after)) <= _JUMP * h

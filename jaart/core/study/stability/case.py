@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from jaart.core.errors import JaartError
@@ -80,6 +80,11 @@ def case(number: int, title: str, expected: str,
         return run
 
     return declare
+
+
+def counted(counts: Mapping[str, int]) -> str:
+    """In words, how many rays ended in each state."""
+    return ", ".join(f"{count} {name}" for name, count in counts.items())
 
 
 def error_of(run: Callable[[], object]) -> str:

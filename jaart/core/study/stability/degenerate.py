@@ -13,7 +13,7 @@ from jaart.core.io import load
 from jaart.core.samples import fibonacci
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
-from jaart.core.study.stability.case import Outcome, case, error_of
+from jaart.core.study.stability.case import Outcome, case, counted, error_of
 from jaart.core.study.stability.scenes import cloud, plane, shot
 from jaart.core.trace import trace
 
@@ -74,7 +74,7 @@ def _all_undefined(aimed: tuple[tuple[Scene, Any], ...]) -> Outcome:
             origins = np.array(middle) + 0.05 * around[::-1] - 3 * around
             for name, count in shot(scene, BARE.replace(search=search), origins, around).counts().items():
                 ends[name] = ends.get(name, 0) + count
-    return Outcome(f"{ends}", ends == {"undefined_normal": 12 * len(SEARCHES) * len(aimed)})
+    return Outcome(counted(ends), ends == {"undefined_normal": 12 * len(SEARCHES) * len(aimed)})
 
 
 @case(20, "300 scattered points of a tilted plane, normals by covariance",

@@ -13,7 +13,7 @@ from jaart.core.samples import fibonacci
 from jaart.core.scene import Array, Model, Scene
 from jaart.core.settings import Settings
 from jaart.core.shapes import Sphere
-from jaart.core.study.stability.case import Outcome, case, error_of
+from jaart.core.study.stability.case import Outcome, case, counted, error_of
 from jaart.core.study.stability.scenes import cloud, plane, shot, sphere
 from jaart.core.trace import trace
 
@@ -40,7 +40,8 @@ def h_of_a_fiftieth_spacing() -> Outcome:
         hits = shot(scene, FREE.replace(h=0.02, radius=5.0, search=search), rays, np.tile(DOWN, (len(rays), 1)))
         errors.append(float(np.abs(hits.t - (5.0 - aimed[:, 2])).max()))
     holes = shot(scene, Settings().replace(h=0.02), rays, np.tile(DOWN, (len(rays), 1))).counts()
-    return Outcome(f"{len(rays)} rays, 3 searches: largest error of t {max(errors):.1e}; with the usual radius {holes}",
+    return Outcome(f"{len(rays)} rays, 3 searches: largest error of t {max(errors):.1e}; with the usual radius "
+                   f"{counted(holes)}",
                    max(errors) <= 1e-15 and holes == {"few_neighbours": len(rays)})
 
 
@@ -88,7 +89,7 @@ def _refused_h(*values: float | str) -> Outcome:
         return lambda: Settings().replace(h=value)
 
     messages = [error_of(typed(value)) for value in values]
-    clear = [m.startswith("h = ") and "expected a finite number" in m and "> 0" in m and "\n" not in m
+    clear = [m.startswith("h = ") and "a finite number > 0" in m and "\n" not in m
              for m in messages]
     return Outcome(f"{sum(clear)} of {len(values)} refused; {messages[0]}", all(clear))
 

@@ -29,7 +29,7 @@ def levels_that_are_none() -> Outcome:
     said = [error_of(partial(_of_file, value)) for value in (np.nan, np.inf, -0.1, 1.1)]
     named = [all(word in text for word in ("array 'levels'", "1 value", "[1, 2, 3]")) for text in said]
     levels, notes = _of_file(1 + 5e-4)
-    clipped = bool(levels[1, 2, 3] == 1.0) and "1 levels up to 0.0005 outside [0, 1] were clipped" in notes
+    clipped = bool(levels[1, 2, 3] == 1.0) and "1 level up to 0.0005 outside [0, 1] was clipped" in notes
     return Outcome(f"{said[0].partition(': ')[2]}; {sum(named)} of 4 so; 1.0005: {'; '.join(notes)}",
                    all(named) and clipped)
 

@@ -16,7 +16,7 @@ from jaart.core.records import Hits
 from jaart.core.render import render
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
-from jaart.core.study.stability.case import Outcome, case, error_of
+from jaart.core.study.stability.case import Outcome, case, counted, error_of
 from jaart.core.study.stability.scenes import shot
 
 #: Levels of a basin along the axis in which it is filled: the surface is at 5.3 cells.
@@ -58,7 +58,7 @@ def cells_without_a_normal() -> Outcome:
 def empty_lattice() -> Outcome:
     """A frame of a series may be empty, so that it is no error."""
     hits, texts = _seen(np.zeros((6, 7, 8)), Settings())
-    return Outcome(f"{hits.counts()}, note: {'; '.join(texts)}",
+    return Outcome(f"{counted(hits.counts())}, note: {'; '.join(texts)}",
                    hits.counts() == {"background": len(hits)} and len(texts) == 1 and "0 surfels" in texts[0])
 
 
@@ -71,8 +71,8 @@ def full_lattice() -> Outcome:
     ways, size = np.concatenate((np.eye(3), -np.eye(3))), np.array(levels.shape)
     block = shot(Scene("full", levels=levels), Settings(border="closed", placement="exact"), size / 2 - 20 * ways, ways)
     error = np.abs(block.t - (20 - np.abs(ways) @ size / 2)).max()
-    return Outcome(f"open: {hits.counts()}, note: {'; '.join(texts)}; closed: {block.hit.sum()} of 6 met, error up to "
-                   f"{error:.1e}", bool(hits.counts() == {"background": len(hits)} and len(texts) == 1
+    return Outcome(f"open: {counted(hits.counts())}, note: {'; '.join(texts)}; closed: {block.hit.sum()} of 6 met, "
+                   f"error up to {error:.1e}", bool(hits.counts() == {"background": len(hits)} and len(texts) == 1
                                         and block.hit.all() and error <= 1e-14))
 
 

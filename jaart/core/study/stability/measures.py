@@ -16,7 +16,7 @@ from jaart.core.scene import Array, Model, Scene
 from jaart.core.settings import Settings
 from jaart.core.shapes import Box, Solid, Sphere
 from jaart.core.statistics import statistics, table
-from jaart.core.study.stability.case import Outcome, case
+from jaart.core.study.stability.case import Outcome, case, counted
 from jaart.core.study.stability.scenes import shot
 from jaart.core.trace import trace
 
@@ -80,7 +80,7 @@ def sphere_smaller_than_a_cell() -> Outcome:
     bubble = _down(corner, Settings(method="mahalanobis", level=0.2))
     nothing = _down(cell, Settings())
     return Outcome(f"{len(covered)} surfels, normals to {off:.0e}, {bubble.hit.sum()} hit at level 0.2; within a cell "
-                   f"{len(within)} surfels, {nothing.counts()}; note: {said[0]}",
+                   f"{len(within)} surfels, {counted(nothing.counts())}; note: {said[0]}",
                    bool(len(covered) == 8 and off <= 1e-12 and bubble.hit.all() and len(within) == 0
                         and nothing.counts() == {"background": 1} and len(said) == 2))
 

@@ -11,7 +11,7 @@ from jaart.core.camera import Camera, parse
 from jaart.core.records import Hits
 from jaart.core.render import render
 from jaart.core.settings import Settings
-from jaart.core.study.stability.case import Outcome, case, error_of, refused
+from jaart.core.study.stability.case import Outcome, case, counted, error_of, refused
 from jaart.core.study.stability.scenes import plane
 
 #: Straight above the plane of the scenes.
@@ -28,7 +28,7 @@ def pictures_and_views_without_a_size() -> Outcome:
     one = _picture((1, 1))
     met = one.counts() == {"converged": 1} and bool(one.t[0] == 9.0)
     return Outcome(f"{sum(sizes)} of 3 sizes, {sum(views)} of 4 angles and {sum(typed)} of 4 typed ones refused; 1×1: "
-                   f"{one.counts()} at t = {one.t[0]:g}", all((*sizes, *views, *typed, met)))
+                   f"{counted(one.counts())} at t = {one.t[0]:g}", all((*sizes, *views, *typed, met)))
 
 
 @case(65, "up along the view, given and not given; eye and target the same",

@@ -10,7 +10,7 @@ from jaart.core.records import STATUS_NAMES, Hits
 from jaart.core.samples import fibonacci
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
-from jaart.core.study.stability.case import Outcome, case, error_of
+from jaart.core.study.stability.case import Outcome, case, counted, error_of
 from jaart.core.study.stability.scenes import cloud, plane, shot, sphere
 from jaart.core.trace import trace
 
@@ -118,7 +118,7 @@ def no_direction() -> Outcome:
     errors = [error_of(lambda d=d: trace(plane(), FLAT, (0, 0, 5), d)) for d in bad]  # type: ignore[misc]
     hits = shot(plane(), FLAT, [[0, 0, 5]] * 4, [*bad, [0, 0, -1]])
     said = "zero length" in errors[0] and all("three finite numbers" in e for e in errors[1:])
-    return Outcome(f"{'; '.join(errors)}; {hits.counts()}, t = {hits.t[3]:g}",
+    return Outcome(f"{'; '.join(errors)}; {counted(hits.counts())}, t = {hits.t[3]:g}",
                    said and hits.counts() == {"bad_ray": 3, "converged": 1} and hits.t[3] == 5)
 
 

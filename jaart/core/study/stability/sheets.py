@@ -8,7 +8,7 @@ import numpy as np
 
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
-from jaart.core.study.stability.case import Outcome, case
+from jaart.core.study.stability.case import Outcome, case, counted
 from jaart.core.study.stability.scenes import cloud, plane, shot
 
 #: h is 1; balls as large as two sheets together, and no bound on what is found.
@@ -74,7 +74,7 @@ def midway_between_opposite_normals() -> Outcome:
     ends = [shot(pair(2.0, -1.0), CLOSE.replace(search=search), 0.1 * along, along).counts()
             for search in ("safe", "march")]
     up = float(shot(pair(2.0, -1.0), CLOSE, (0.2, 0.1, 0.0), (0, 0, 1)).t[0])
-    return Outcome(f"{ends[0]}, {ends[1]}; straight up t = {up:.4f}",
+    return Outcome(f"{counted(ends[0])}; {counted(ends[1])}; straight up t = {up:.4f}",
                    ends == [{"undefined_normal": 12}] * 2 and abs(up - 0.957504) < 1e-6)
 
 
@@ -99,4 +99,4 @@ def a_ray_far_beside_a_surfel() -> Outcome:
         hits = shot(one, CLOSE.replace(search=search), around + (0, 0, 5), np.tile((0.0, 0.0, -1.0), (200, 1)))
         for name, count in hits.counts().items():
             ends[name] = ends.get(name, 0) + count
-    return Outcome(f"{ends}", ends == {"background": 400})
+    return Outcome(counted(ends), ends == {"background": 400})

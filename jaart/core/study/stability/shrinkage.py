@@ -12,7 +12,7 @@ from jaart.core.samples import fibonacci
 from jaart.core.scene import Array, Model, Scene
 from jaart.core.settings import Settings
 from jaart.core.shapes import Box
-from jaart.core.study.stability.case import Outcome, case
+from jaart.core.study.stability.case import Outcome, case, counted
 from jaart.core.study.stability.scenes import cloud, plane, shot
 
 #: h is 1. Balls that reach to the middle, a search that misses nothing, and no bound on what is found.
@@ -63,8 +63,8 @@ def slabs_that_are_too_thin() -> Outcome:
     hits = [shot(_slab(thickness), DENSE, origins, down).counts() for thickness in (1.2, 1.4)]
     box = Scene("case", model=Model((Box((0.5, 0.5, 0.5), (0.6, 0.6, 0.125)),), 24))
     said = notes(box, Settings().replace(h=3 / 1.4))
-    return Outcome(f"{hits[0]}, {hits[1]}; {'; '.join(said)}", all("converged" not in ends for ends in hits)
-                   and len(said) == 1 and f"sheets below {math.sqrt(2) * 3 / 1.4:.4g} (1.414 h) collapse" in said[0])
+    return Outcome(f"{counted(hits[0])}; {counted(hits[1])}; {'; '.join(said)}",
+                   all("converged" not in ends for ends in hits) and len(said) == 1 and f"sheets below {math.sqrt(2) * 3 / 1.4:.4g} (1.414 h) collapse" in said[0])
 
 
 @case(11, "slabs 1.44, 1.6, 2 and 3 h thick", "half thicknesses 0.2316, 0.5891, 0.9575, 1.4996 h, to 1e-6")
