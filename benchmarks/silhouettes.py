@@ -46,7 +46,8 @@ def settings(**values: object) -> Settings:
 class Count:
     """How a search did on some rays, of which so many hit the surface.
 
-    false_hits, false_misses: against the dense look; rear: hits behind the first; evaluations: a ray.
+    false_hits, false_misses: against the dense look, a hit before the first is a false one; rear: hits behind the
+    first; evaluations: a ray.
     """
 
     rays: int
@@ -61,9 +62,10 @@ def counted(scene: Scene, search: Settings, rays: tuple[Array, Array], truth: Ar
     """A search against the truth."""
     hits = jaart.render(scene, search, rays=rays)
     there = ~np.isnan(truth)
-    both = hits.hit & there
-    return Count(len(truth), int(there.sum()), int((hits.hit & ~there).sum()), int((there & ~hits.hit).sum()),
-                 int((hits.t[both] > truth[both] + SAME).sum()), float(hits.evaluations.mean()))
+    with np.errstate(invalid="ignore"):
+        false, rear = hits.hit & ~(hits.t >= truth - SAME), hits.hit & (hits.t > truth + SAME)
+    return Count(len(truth), int(there.sum()), int(false.sum()), int((there & ~hits.hit).sum()), int(rear.sum()),
+                 float(hits.evaluations.mean()))
 
 
 def anywhere(scene: Scene, chosen: Settings, count: int, seed: int) -> tuple[Array, Array]:

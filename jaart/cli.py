@@ -85,14 +85,16 @@ def gui(scene: SceneName = "splash",
     settings = typed.settings(preset, set_ or [])
     if screenshot is not None:
         typed.output(screenshot, "--screenshot", ".png")
-    view = None
+    view, notes = None, ()
     if camera or set_ or preset != DEFAULT_PRESET:
-        loaded, settings = files.open_scene(scene, frame, settings, preset, set_)
+        loaded = files.load(scene, frame)
+        settings, notes = files.fitted(loaded, settings, preset, set_)
+        report.note(notes)
         view = typed.camera(camera, loaded, settings) if camera else None
 
     from jaart.gui.app import run as open_window
 
-    return open_window(scene, settings, view, pixel, None if screenshot is None else str(screenshot), frame)
+    return open_window(scene, settings, view, pixel, None if screenshot is None else str(screenshot), frame, notes)
 
 
 @app.command()

@@ -32,9 +32,16 @@ def open_scene(source: str, frame: int | None, chosen: Settings, preset: str, as
                implied: tuple[str, ...] = ()) -> tuple[Scene, Settings]:
     """A scene, and the settings as it can take them; implied: names of settings that other options gave."""
     scene = load(source, frame)
-    fitting, notes = typed.suit(scene, chosen, assignments or [], implied)
-    report.note(notes if preset != DEFAULT_PRESET else ())  # that one is for every scene
+    fitting, notes = fitted(scene, chosen, preset, assignments, implied)
+    report.note(notes)
     return scene, fitting
+
+
+def fitted(scene: Scene, chosen: Settings, preset: str, assignments: list[str] | None,
+           implied: tuple[str, ...] = ()) -> tuple[Settings, tuple[str, ...]]:
+    """The settings as a scene can take them, and notes of what was left out of a preset that somebody named."""
+    fitting, notes = typed.suit(scene, chosen, assignments or [], implied)
+    return fitting, notes if preset != DEFAULT_PRESET else ()  # the default one is for every scene
 
 
 def check_map(name: str, scene: Scene, settings: Settings) -> None:

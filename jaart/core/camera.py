@@ -147,7 +147,7 @@ def check_distance(camera: Camera, middle: Iterable[float], unit: float) -> None
     far = max(abs(e / unit - float(m) / unit) for e, m in zip(camera.eye, middle, strict=True))
     for name, distance in (("eye", far), ("ortho", (camera.ortho or 0.0) / unit)):
         if not distance < TOO_FAR:
-            value = camera.ortho if name == "ortho" else ",".join(f"{v:g}" for v in camera.eye)
+            value = f"{camera.ortho:g}" if name == "ortho" else ",".join(f"{v:g}" for v in camera.eye)
             raise RayError(f"camera {name} = {value}: rays from so far have no precision; expected less than "
                            f"{TOO_FAR * unit:g} from the scene")
 

@@ -17,17 +17,18 @@ SIDED = ("march", "safe")
 #: What a proof of misses asks of the other settings.
 PROVEN = {"method": "tangent", "normal": "surfel", "search": "safe"}
 #: (name of the setting, whether it is refused, why and what was expected instead).
-Refusal = tuple[str, Callable[[Scene, Settings, Chosen], bool], str | Callable[[Chosen], str]]
+Refusal = tuple[str, Callable[[Scene, Settings, Chosen], bool], str | Callable[[Settings, Chosen], str]]
 
 
 def _bare(scene: Scene) -> bool:
     return scene.kind == "cloud" and scene.normals is None
 
 
-def _unproven(values: Chosen) -> list[str]:
+def _unproven(settings: Settings, values: Chosen) -> list[str]:
     """In words, what a proof of misses asks for and is not so."""
     found = [f"{name} = {word}, not {getattr(values, name)}" for name, word in PROVEN.items()
              if getattr(values, name) != word]
+    found += ["traversal = exact, not uniform"] if settings.traversal == "uniform" else []
     return found + (["a neighbourhood other than knn"] if values.neighbourhood == "knn" else [])
 
 
@@ -53,9 +54,9 @@ REFUSED: tuple[Refusal, ...] = (
      "the points have no normals and orient = none; expected spanning_tree or a viewpoint"),
     ("search", lambda scene, s, c: _bare(scene) and s.orient == "none" and c.search in SIDED,
      "the points have no normals and orient = none; expected spanning_tree or a viewpoint"),
-    ("proof", lambda scene, s, c: s.proof and bool(_unproven(c)),
-     lambda c: "bounds are known for the tangent surface with the surfels' normals alone; expected "
-     + ", and ".join(_unproven(c))),
+    ("proof", lambda scene, s, c: s.proof and bool(_unproven(s, c)),
+     lambda s, c: "bounds are known for the tangent surface with the surfels' normals alone; expected "
+     + ", and ".join(_unproven(s, c))),
     ("shading", lambda scene, s, c: _bare(scene) and s.orient == "none" and s.shading == "water",
      "the points have no normals and orient = none; expected spanning_tree or a viewpoint"),
 )
@@ -66,7 +67,7 @@ def check(scene: Scene, settings: Settings) -> Chosen:
     values = chosen(scene, settings)
     for name, refused, why in REFUSED:
         if refused(scene, settings, values):
-            reason = why if isinstance(why, str) else why(values)
+            reason = why if isinstance(why, str) else why(settings, values)
             raise SettingsError(f"{name} = {_shown(settings, values, name)}: {reason}")
     return values
 

@@ -68,8 +68,8 @@ class Hits:
     def from_behind(self) -> NDArray[np.bool_]:
         """Whether each ray met the surface's inner side, as it does from within the object: <n, d> > 0.
 
-        Normals point outwards, and shading turns them to the viewer. Those of a cloud that has none of its own are
-        on no side where orient is none; then this means nothing.
+        Normals point outwards, and shading turns them to the viewer. Covariance normals of a cloud that has none of
+        its own are on no side; then this means nothing.
         """
         across: Array = np.einsum("ij,ij->i", self.normal, self.direction)
         return self.hit & (across > 0)

@@ -93,7 +93,8 @@ def test_fit_sees_all_corners(extent: tuple[float, float, float], direction: tup
 
 
 @pytest.mark.parametrize(("values", "says"), [
-    ({"target": (0, -10, 0)}, "same point"), ({"up": (0, 1, 0)}, "up runs along the view"), ({"up": (0, 0, 0)}, "up has zero length"),
+    ({"target": (0, -10, 0)}, "same point"), ({"up": (0, 1, 0)}, "up runs along the view"),
+    ({"up": (0, 0, 0)}, "up has zero length"),
     ({"fov": 0.0}, "fov = 0"), ({"fov": 180.0}, "fov = 180"), ({"fov": math.nan}, "fov = nan"),
     ({"ortho": 0.0}, "ortho = 0"), ({"ortho": math.inf}, "ortho = inf"), ({"eye": (0, 0)}, "three numbers"),
     ({"eye": (0, 0, math.nan)}, "finite"),

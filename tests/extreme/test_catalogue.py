@@ -6,9 +6,12 @@ What a row expects, and where its statement is judged wrong and why, stands at t
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
 import pytest
 
-from jaart.core.study.stability.case import CASES, FAILED, HOLDS, Case, Outcome, case, refused
+from jaart.core.study.stability.case import CASES, FAILED, HOLDS, Case, Outcome, case, largest, refused
 from jaart.core.study.stability.study import as_csv, as_markdown, cases
 
 
@@ -38,6 +41,14 @@ def test_a_case_that_raises_has_failed_and_one_that_differs_says_so() -> None:
     assert differing.verdict == "differs"
     assert "0 of 2 hold" in as_markdown((result, differing)) and "1 \\| 2" in as_markdown((result, differing))
     assert as_csv((differing,)).splitlines()[1] == "98,differing,an input,0,1 | 2,differs"
+
+
+def test_the_largest_of_numbers_is_nan_where_one_is() -> None:
+    assert largest(1.0, [2.0, 3.0], np.array([[0.5]])) == 3.0
+    for place in range(3):
+        values = [1.0, 2.0, 3.0]
+        values[place] = math.nan
+        assert math.isnan(largest(values)) and math.isnan(largest(*values))
 
 
 def test_what_is_not_refused_does_not_hold() -> None:

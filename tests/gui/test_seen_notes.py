@@ -11,9 +11,8 @@ from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QApplication
 
 from jaart.core.camera import Camera
-from jaart.gui import app, theme
+from jaart.gui import app, overlay, theme
 from jaart.gui.main_window import MainWindow
-from jaart.gui.overlay import numbers
 
 LEFT, NONE = Qt.MouseButton.LeftButton, Qt.MouseButton.NoButton
 
@@ -83,7 +82,8 @@ def test_a_note_goes_when_it_holds_no_more_and_comes_back(qtbot, window, tmp_pat
     assert not window.notes.isVisible()
     row, lines = window.docks["Parameters"].panel.rows["h"], said(model)
     for _ in range(2):
-        row.box.setText("1000")
+        row.box.lineEdit().selectAll()
+        QTest.keyClicks(row.box.lineEdit(), "1000")
         QTest.keyClick(row.box, Qt.Key.Key_Return)
         settle(qtbot, model)
         assert "h = 1000 is larger than all the points together" in window.notes.text.text()
@@ -126,15 +126,15 @@ def test_a_ray_through_balls_without_a_normal_says_so(qtbot, window, two):
     right = panel.whole.x() * canvas.device_pixel_ratio
     for text in canvas.figure.axes[0].texts:
         box = text.get_window_extent()
-        assert 0 <= box.x0
+        assert box.x0 >= 0
         assert box.x1 < (right if text.get_text().startswith("Normal undefined") else canvas.figure.bbox.x1)
 
 
-def test_a_hit_from_within_is_told_where_the_pixel_is_described(qtbot, window):
+def test_a_hit_from_within_is_told_where_the_pixel_is_described(qtbot, window, monkeypatch):
     model = window.model
     steps = window.docks["Steps"].panel
-    y, x = (int(n) for n in np.argwhere(model.hits.hit.reshape(192, 192) & ~model.hits.from_behind.reshape(192, 192))[0])
-    QTest.mouseClick(window.view, LEFT, pos=window.view.place_of((x, y)).toPoint())
+    outside = int(np.flatnonzero(model.hits.hit & ~model.hits.from_behind)[0])
+    QTest.mouseClick(window.view, LEFT, pos=window.view.place_of((outside % 192, outside // 192)).toPoint())
     settle(qtbot, model)
     QTest.keyClick(window.docks["2D projector"].panel, Qt.Key.Key_End)
     assert steps.state.text().endswith("arrived")
@@ -146,9 +146,11 @@ def test_a_hit_from_within_is_told_where_the_pixel_is_described(qtbot, window):
     assert model.trace.hit
     QTest.keyClick(window.docks["2D projector"].panel, Qt.Key.Key_End)
     assert steps.state.text().endswith("arrived, from behind")
-    assert dict(numbers(model.hits, None, 96, 96, sided=model.known.sided))["Ray"] == "arrived, from behind"
+    cards, draw = [], overlay.draw_lens
+    monkeypatch.setattr(overlay, "draw_lens", lambda *args: (cards.append(dict(args[4])), draw(*args)))
     hover(window.view, (96, 96))
-    assert window.view.hovered == (96, 96)
+    assert cards[-1]["Pixel"] == "96, 96"
+    assert cards[-1]["Ray"] == "arrived, from behind"
 
 
 def hover(view, pixel):

@@ -123,3 +123,37 @@ def test_the_page_of_a_ray_through_a_cloud_is_drawn(ray, tmp_path):
     figure = trace_figure(ray, theme="dark")
     figure.savefig(tmp_path / "ray.svg")
     assert (tmp_path / "ray.svg").stat().st_size > 5000
+
+
+@pytest.mark.parametrize(("x", "words"), [
+    (0.5, "pierces 2 balls,\nbut the normal is undefined there"),
+    (-0.5, "pierces 1 ball,\nbut the normal is undefined there"),
+    (-1.5, "pierces no ball")])
+def test_a_ray_without_steps_says_what_it_went_through(x, words):
+    scene = Scene("two", points=np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
+    found = trace(scene, Settings(ball_k=1), (x, 0.0, 9.0), (0.0, 0.0, -1.0))
+    assert found.steps == 0
+    assert scale.no_steps(found) == f"This ray {words}:\nno step was taken."
+
+
+def test_why_no_step_was_taken_stands_in_the_middle_of_the_energies_and_below_the_title():
+    scene = Scene("two", points=np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
+    figure = energy_figure(trace(scene, Settings(), (0.4, 0.0, 9.0), (0.0, 0.0, -1.0)), size=(4.0, 2.0))
+    figure.draw_without_rendering()
+    axes = figure.axes[0]
+    boxes = {text.get_text(): text.get_window_extent() for text in axes.texts}
+    assert "Normal undefined: no step was taken" in boxes
+    why = next(box for text, box in boxes.items() if "pierces 2 balls" in text)
+    for low, at, high in ((axes.bbox.x0, why.x0, why.x1), (axes.bbox.y0, why.y0, why.y1)):
+        assert low < at < high
+    assert why.x1 < axes.bbox.x1
+    assert why.y1 < axes.bbox.y1
+    for box in boxes.values():
+        assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
+
+
+def test_a_ray_that_misses_keeps_its_curves_free(cloud):
+    rays = (trace(cloud, Settings(), SHIFT + (0.0, y, 1.0), (0.0, 0.0, -1.0)) for y in np.arange(0.009, 0.0125, 1e-5))
+    found = next(ray for ray in rays if not ray.hit and not ray.steps and np.isfinite(ray.curves.tangent).any())
+    assert scale.no_steps(found).startswith("This ray misses the surface")
+    assert [text.get_text() for text in energy_figure(found).axes[0].texts] == ["Background: no step was taken"]

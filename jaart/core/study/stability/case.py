@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from jaart.core.errors import JaartError
 
@@ -80,6 +84,11 @@ def case(number: int, title: str, expected: str,
         return run
 
     return declare
+
+
+def largest(*values: Any) -> float:
+    """The largest of numbers and arrays; NaN where one of them is: what has no value must not pass for a small one."""
+    return float(max((float(np.max(value)) for value in values), key=lambda one: (math.isnan(one), one)))
 
 
 def counted(counts: Mapping[str, int]) -> str:

@@ -13,7 +13,7 @@ from jaart.core.io import load
 from jaart.core.samples import fibonacci
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
-from jaart.core.study.stability.case import Outcome, case, counted, error_of
+from jaart.core.study.stability.case import Outcome, case, counted, error_of, largest
 from jaart.core.study.stability.scenes import cloud, plane, shot
 from jaart.core.trace import trace
 
@@ -95,8 +95,8 @@ def points_of_a_plane() -> Outcome:
         off.append(float(np.abs(hits.point @ n - 0.7).max()))
         turned.append(float(np.linalg.norm(np.cross(hits.normal, n), axis=1).max()))
     rays = len(SEARCHES) * int(slanted.sum())
-    return Outcome(f"{met} of {rays} hit, off the plane by {max(off):.1e}, normal by {max(turned):.1e} rad",
-                   met == rays and max(off) <= 1e-15 and max(turned) <= 1e-15)
+    return Outcome(f"{met} of {rays} hit, off the plane by {largest(off):.1e}, normal by {largest(turned):.1e} rad",
+                   met == rays and largest(off) <= 1e-15 and largest(turned) <= 1e-15)
 
 
 @case(21, "covariance normals up to 2.2 h above a plane",

@@ -13,7 +13,7 @@ from jaart.core.samples import fibonacci
 from jaart.core.scene import Array, Model, Scene
 from jaart.core.settings import Settings
 from jaart.core.shapes import Sphere
-from jaart.core.study.stability.case import Outcome, case, counted, error_of
+from jaart.core.study.stability.case import Outcome, case, counted, error_of, largest
 from jaart.core.study.stability.scenes import cloud, plane, shot, sphere
 from jaart.core.trace import trace
 
@@ -40,9 +40,9 @@ def h_of_a_fiftieth_spacing() -> Outcome:
         hits = shot(scene, FREE.replace(h=0.02, radius=5.0, search=search), rays, np.tile(DOWN, (len(rays), 1)))
         errors.append(float(np.abs(hits.t - (5.0 - aimed[:, 2])).max()))
     holes = shot(scene, Settings().replace(h=0.02), rays, np.tile(DOWN, (len(rays), 1))).counts()
-    return Outcome(f"{len(rays)} rays, 3 searches: largest error of t {max(errors):.1e}; with the usual radius "
+    return Outcome(f"{len(rays)} rays, 3 searches: largest error of t {largest(errors):.1e}; with the usual radius "
                    f"{counted(holes)}",
-                   max(errors) <= 1e-15 and holes == {"few_neighbours": len(rays)})
+                   largest(errors) <= 1e-15 and holes == {"few_neighbours": len(rays)})
 
 
 @case(2, "f at 15.5, 21 and 22 cells from a plane, h = 0.8: up to 27.5 h", "f = -15.5, -21, -22, to 2 ulp of t")

@@ -16,7 +16,7 @@ from jaart.core.records import Hits
 from jaart.core.render import render
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
-from jaart.core.study.stability.case import Outcome, case, counted, error_of
+from jaart.core.study.stability.case import Outcome, case, counted, error_of, largest
 from jaart.core.study.stability.scenes import shot
 
 #: Levels of a basin along the axis in which it is filled: the surface is at 5.3 cells.
@@ -35,7 +35,7 @@ def lattices_one_cell_wide() -> Outcome:
             hits = shot(Scene("thin", levels=levels), Settings(placement="exact"),
                         np.array(levels.shape) / 2 * (down == 0) - 20 * down, down)
             met += int(hits.hit.sum())
-            worst = max(worst, abs(float(hits.t[0]) - 14.7), float(np.abs(hits.normal[0] + down).max()))
+            worst = largest(worst, abs(hits.t[0] - 14.7), np.abs(hits.normal[0] + down))
     return Outcome(f"{met} of 9 met, error up to {worst:.1e}", met == 9 and worst <= 1e-14)
 
 
@@ -88,7 +88,7 @@ def full_cells_beside_empty_ones() -> Outcome:
     tip = np.flatnonzero((corner.cells == 2).all(axis=1))
     errors = np.abs(face.points[:, 2] - 3).max(), np.abs(corner.points[tip] - 3).max()
     return Outcome(f"25 faces: error {errors[0]:.1e}, the corner: error {errors[1]:.1e}",
-                   len(face) == 25 and len(tip) == 1 and max(errors) <= 5e-16)
+                   len(face) == 25 and len(tip) == 1 and largest(errors) <= 5e-16)
 
 
 @case(60, "cells of 1×1×4", "normals and points are those of space: a plane is met where it is")

@@ -22,8 +22,11 @@ from jaart.core.scene import Scene
 from jaart.core.settings import Settings
 from jaart.core.study.stability.case import Outcome, case, error_of
 from jaart.core.study.stability.scenes import cloud, plane, shot, sphere
+from jaart.core.tiles import TILE
 from jaart.core.trace import trace
 
+#: A picture of more tiles than threads.
+SIZE = 160, 120
 #: Freedoms of a compiler that make NaN or infinity what it likes.
 UNSAFE = {"fast", "nnan", "ninf"}
 #: The columns of hits that are numbers of the surface.
@@ -55,16 +58,19 @@ def nan_in_compiled_code() -> Outcome:
 
 @case(72, "pictures by 1, 2, 3 and 4 threads, of a lattice and a cloud", "the same bits in every column")
 def pictures_by_any_number_of_threads() -> Outcome:
-    """No sum runs over rays, and the order of each ray's own sums is fixed. Each picture has a scene of its own."""
+    """No sum runs over rays, and the order of each ray's own sums is fixed. Each picture has a scene of its own, and
+    more tiles than threads.
+    """
     lattice = partial(Scene, "lattice", levels=prepare.levels(load("standard"), Settings()))
     tried: list[tuple[Callable[[], Scene], Settings]] = [
         (lattice, Settings(method=method, search=search)) for method, search in
         (("tangent", "iterate"), ("polynomial", "secant"), ("tangent", "safe"), ("mahalanobis", "auto"))]
     tried += [(partial(sphere, 800), Settings(h=Length(0.15), method=method)) for method in ("tangent", "polynomial")]
-    marks = [{_mark(render(make(), settings, size=(72, 56), threads=threads)) for threads in (1, 2, 3, 4)}
+    marks = [{_mark(render(make(), settings, size=SIZE, threads=threads)) for threads in (1, 2, 3, 4)}
              for make, settings in tried]
     same = sum(len(each) == 1 for each in marks)
-    return Outcome(f"{same} of {len(marks)} pictures the same by all", same == len(marks) == len(set.union(*marks)))
+    return Outcome(f"{same} of {len(marks)} pictures the same by all, each in {-(-SIZE[0] * SIZE[1] // TILE)} tiles",
+                   same == len(marks) == len(set.union(*marks)) and SIZE[0] * SIZE[1] > 4 * TILE)
 
 
 @case(73, "files with numbers of 32 bits, a lattice and a cloud; the cloud 1e4 sizes away as well",

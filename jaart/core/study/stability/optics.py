@@ -17,7 +17,7 @@ from jaart.core.secondary import tracer
 from jaart.core.settings import Settings, preset
 from jaart.core.shade import shade
 from jaart.core.shapes import Sphere
-from jaart.core.study.stability.case import Outcome, case
+from jaart.core.study.stability.case import Outcome, case, largest
 from jaart.core.study.stability.scenes import plane, shot
 from jaart.core.water import water
 
@@ -34,7 +34,7 @@ def refraction_exactly_at_the_critical_angle() -> Outcome:
     up = np.column_stack((np.cos(turn), np.zeros(len(turn)), np.sin(turn)))
     aside = np.column_stack((np.sin(turn), np.zeros(len(turn)), -np.cos(turn)))
     both = split(sine[:, None] * aside - np.sqrt((1 - sine) * (1 + sine))[:, None] * up, up, IOR)
-    off = max(_off_unit(both.refracted), _off_unit(both.reflected))
+    off = largest(_off_unit(both.refracted), _off_unit(both.reflected))
     share = both.reflectance
     total = int((share == 1).sum())
     fine = bool(np.isfinite(share).all()) and share.min() > 1 - 1e-5 and share.max() <= 1
@@ -52,12 +52,12 @@ def normals_a_little_too_long_in_snells_law() -> Outcome:
         normal = np.array([[0.1 * math.sin(turn), 0.1 * math.cos(turn), 1.0]])
         normal *= (1 + 1e-8) / np.linalg.norm(normal)
         ray = split(ray, normal, 1 / IOR if bounce % 2 == 0 else IOR).refracted
-        worst = max(worst, _off_unit(ray))
+        worst = largest(worst, _off_unit(ray))
     return Outcome(f"|t| - 1 up to {worst:.1e} in 60 bounces", worst <= 4e-16)
 
 
 @case(49, "a ray that is mirrored whole at every bounce within a ball, followed 64 times",
-      "it ends at the depth allowed, which is counted; the light that leaves is all that came")
+      "it ends at the depth allowed, at most 64, which is counted; the light that leaves is all that came")
 def whispering_gallery() -> Outcome:
     """Rays are followed generation by generation, so that no call stack bounds the depth.
 

@@ -11,7 +11,7 @@ from jaart.core.camera import Camera, parse
 from jaart.core.records import Hits
 from jaart.core.render import render
 from jaart.core.settings import Settings
-from jaart.core.study.stability.case import Outcome, case, counted, error_of, refused
+from jaart.core.study.stability.case import Outcome, case, counted, error_of, largest, refused
 from jaart.core.study.stability.scenes import plane
 
 #: Straight above the plane of the scenes.
@@ -38,8 +38,7 @@ def up_along_the_view() -> Outcome:
     given = refused(partial(ABOVE.replace, up=(0.0, 0.0, -3.0)), "camera: up runs along the view")
     same = refused(partial(ABOVE.replace, target=ABOVE.eye), "camera: eye and target are the same point")
     beside = [ABOVE.replace(up=(1e-6, 0.0, 1.0)), *(ABOVE.replace(eye=eye) for eye in 9 * np.eye(3))]
-    off = max(float(np.abs(np.array(camera.frame()) @ np.array(camera.frame()).T - np.eye(3)).max())
-              for camera in beside)
+    off = largest([np.abs(np.array(camera.frame()) @ np.array(camera.frame()).T - np.eye(3)) for camera in beside])
     return Outcome(f"{given.got}; {same.got}; chosen: {len(beside)} frames, off orthonormal by up to {off:.1e}",
                    given.holds and same.holds and off <= 1e-15)
 

@@ -10,7 +10,7 @@ from jaart.core.records import STATUS_NAMES, Hits
 from jaart.core.samples import fibonacci
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
-from jaart.core.study.stability.case import Outcome, case, counted, error_of
+from jaart.core.study.stability.case import Outcome, case, counted, error_of, largest
 from jaart.core.study.stability.scenes import cloud, plane, shot, sphere
 from jaart.core.trace import trace
 
@@ -107,7 +107,8 @@ def camera_exactly_on_the_surface() -> Outcome:
             if not offset:
                 close.append(float(np.abs(shot(scene, settings, at + 1e-9 * n, -n).t - 1e-9).max()))
     return Outcome(f"{own} of {2 * total} rays met their own start, {far} of {total} the far wall, at t >= {near:.2f}; "
-                   f"from 1e-9 above t is off by {max(close):.1e}", own == 0 and far == total and max(close) < 1e-13)
+                   f"from 1e-9 above t is off by {largest(close):.1e}",
+                   own == 0 and far == total and largest(close) < 1e-13)
 
 
 @case(37, "directions of length zero, NaN and infinite", "trace: an error that says so; in a batch: bad_ray, and the "

@@ -8,7 +8,7 @@ import numpy as np
 
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
-from jaart.core.study.stability.case import Outcome, case, counted
+from jaart.core.study.stability.case import Outcome, case, counted, largest
 from jaart.core.study.stability.scenes import cloud, plane, shot
 
 #: h is 1; balls as large as two sheets together, and no bound on what is found.
@@ -45,7 +45,7 @@ def heights(gap: float, normal: str) -> Array:
       "they merge: below √2 h there is one sheet, in the middle, from above, beneath and between")
 def sheets_that_merge() -> Outcome:
     """f = s tanh(2sz/h²) - z has its only zero at z = 0 while 2s < √2 h, and falls through it."""
-    worst = max(float(np.abs(heights(gap, normal)).max()) for gap in GAPS for normal in ("surfel", "covariance"))
+    worst = largest([np.abs(heights(gap, normal)) for gap in GAPS for normal in ("surfel", "covariance")])
     beyond = sum(int(shot(pair(gap, 1.0), CLOSE, (0.2, 0.1, -0.01), (0, 0, -1)).hit.sum()) for gap in GAPS)
     return Outcome(f"36 rays meet z = 0, off by up to {worst:.1e} h; {beyond} of 3 a sheet beyond it",
                    worst <= 1e-6 and beyond == 0)
@@ -63,7 +63,7 @@ def ghost_between_two_sheets() -> Outcome:
     sides = np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
     off = [float(np.abs(heights(gap, normal) - z * sides).max()) for gap, z in ((2.0, 0.957504), (1.6, 0.589141))
            for normal in ("surfel", "covariance")]
-    return Outcome(f"24 rays meet ±0.957504 and ±0.589141 h, off by up to {max(off):.1e} h", max(off) <= 1e-6)
+    return Outcome(f"24 rays meet ±0.957504 and ±0.589141 h, off by up to {largest(off):.1e} h", largest(off) <= 1e-6)
 
 
 @case(14, "rays in the plane midway between two sheets with opposite normals",
@@ -87,7 +87,8 @@ def a_single_surfel() -> Outcome:
     for search in ("iterate", "secant", "newton", "safe", "march"):
         hits = shot(one, Settings(search=search, tolerance=0).replace(h=1.0), aside - directions, directions)
         errors.append(float(np.abs(hits.t - math.sqrt(2)).max()))
-    return Outcome(f"4 rays, 5 searches: largest error {max(errors):.1e}", max(errors) <= np.spacing(math.sqrt(2)))
+    return Outcome(f"4 rays, 5 searches: largest error {largest(errors):.1e}",
+                   largest(errors) <= np.spacing(math.sqrt(2)))
 
 
 @case(16, "a single surfel, rays that pass it at 100 h", "a miss: there is no surface so far from all surfels")

@@ -13,7 +13,7 @@ from jaart.core.samples import fibonacci
 from jaart.core.scene import Array, Model, Scene
 from jaart.core.settings import Settings
 from jaart.core.shapes import Sphere
-from jaart.core.study.stability.case import Outcome, case
+from jaart.core.study.stability.case import Outcome, case, largest
 from jaart.core.study.stability.scenes import shot
 from jaart.core.trace import trace
 
@@ -35,7 +35,7 @@ def tolerance_beyond_the_floor(rays: int) -> Outcome:
             hits = _towards_the_middle(rays, Settings(search=search, tolerance=tolerance, max_iterations=50))
             exact = (hits.status == STATUS["converged"]) & (hits.energy == 0.0) & (tolerance > 0)
             floor, arrived = floor + int((hits.status == STATUS["floor"]).sum()), arrived + int(exact.sum())
-            worst = max(worst, float(hits.energy.max()) / H)
+            worst = largest(worst, hits.energy / H)
     return Outcome(f"{floor} floor, {arrived} arrived by a step of 0, of {8 * rays} rays; residual up to {worst:.1e} h",
                    floor + arrived == 8 * rays and floor >= 4 * rays and worst <= 1e-13)
 
@@ -85,7 +85,7 @@ def _jump(rays: int, settings: Settings) -> float:
 
     They meet the ball head-on, so that a step along them is f.
     """
-    return max(float(_jumps(settings, way).max(initial=0.0)) for way in fibonacci(rays)) / H
+    return largest([_jumps(settings, way).max(initial=0.0) for way in fibonacci(rays)]) / H
 
 
 def _jumps(settings: Settings, way: Array) -> Array:

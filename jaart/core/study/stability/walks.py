@@ -11,7 +11,7 @@ from jaart.core.kernels import traversal
 from jaart.core.render import unit
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
-from jaart.core.study.stability.case import Outcome, case
+from jaart.core.study.stability.case import Outcome, case, largest
 from jaart.core.study.stability.looks import thesis_sphere
 from jaart.core.study.stability.scenes import shot
 from jaart.core.trace import trace
@@ -94,7 +94,7 @@ def along_edges_and_corners() -> Outcome:
             aside = 1e-9 * unit(np.cross(directions, rng.normal(size=origins.shape)))
             beside = shot(thesis_sphere(), settings, origins + aside, directions)
             lost += int((beside.hit != on.hit).sum())
-            worst = max(worst, float(np.nanmax(np.abs(beside.t - on.t))))
+            worst = largest(worst, np.abs(beside.t - on.t)[on.hit & beside.hit])
     return Outcome(f"{hits} hits of {len(ROOTS) * len(origins)} rays, {lost} other than beside; t differs by "
                    f"{worst:.1e} at most", lost == 0 and hits > 0 and worst < 1e-8)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from jaart.core.records import STATUS
 from jaart.core.settings import Settings
 from jaart.core.study.stability.case import Outcome, case
 from jaart.core.study.stability.looks import thesis_sphere
@@ -26,7 +27,7 @@ def weights_that_sum_to_nothing() -> Outcome:
             flat = shot(plane(), settings, [[20, 0, 5], [7, 7, 5], [0.3, 0.2, 5]], [[0, 0, -1]] * 3)
             ball = shot(thesis_sphere(), settings.replace(h=0.6), [[1, 1, 20], [8, 1, 20], [8.2, 8.3, 20]],
                         [[0, 0, -1]] * 3)
-            missed += sum(int((found.status[:2] == 1).sum()) for found in (flat, ball))
+            missed += sum(int((found.status[:2] == STATUS["background"]).sum()) for found in (flat, ball))
             hits += [found for found in (flat, ball) if found.hit[2]]
     finite = all(np.isfinite([h.t[2], *h.point[2], *h.normal[2]]).all() for h in hits)
     return Outcome(f"{missed} of 84 rays background; {len(hits)} of 42 others hit, "
