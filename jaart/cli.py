@@ -85,7 +85,8 @@ def gui(scene: SceneName = "splash",
     settings = typed.settings(preset, set_ or [])
     if screenshot is not None:
         typed.output(screenshot, "--screenshot", ".png")
-    view, notes = None, ()
+    view = None
+    notes: tuple[str, ...] = ()
     if camera or set_ or preset != DEFAULT_PRESET:
         loaded = files.load(scene, frame)
         settings, notes = files.fitted(loaded, settings, preset, set_)

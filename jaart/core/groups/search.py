@@ -38,8 +38,8 @@ class SearchSettings:
         help="How a ray finds the surface. iterate: intersect it with the plane or polynomial at x, again and again. "
              "secant, newton: the same on f/<n, r>, with fewer steps. minimise: the least energy in each cell. march: "
              "even steps to a change of sign, then a straight line. safe: short steps with f and its slope, so that "
-             "no hit is missed where f is continuous. centres: the plane or polynomial at the cell's or ball's centre alone. "
-             "auto: iterate, or minimise for an energy.")
+             "no hit is missed where f is continuous. centres: the plane or polynomial at the cell's or ball's centre "
+             "alone. auto: iterate, or minimise for an energy.")
     tolerance: float = parameter(
         "number", 0.125, low=0, high=10, step=0.005, unit="h", group="Search", label="Tolerance",
         stage="rays", source="[T 2.14]", when=lambda s: searches(s) and s.search not in ("march", "centres"),
