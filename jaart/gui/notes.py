@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QObject, Signal
 
+from jaart.core.io import BUILT_IN
 from jaart.core.records import Hits
 from jaart.plot.style import OUTCOMES
 
@@ -14,7 +15,10 @@ if TYPE_CHECKING:
 
 
 class Notes(QObject):
-    """The notes that hold now; the model says each of them when it begins to hold."""
+    """The notes that hold now; the model says each of them when it begins to hold.
+
+    now: those to show; what was repaired on reading a sample is said, not shown.
+    """
 
     changed = Signal()
 
@@ -23,6 +27,7 @@ class Notes(QObject):
         self.model = model
         self.now: tuple[str, ...] = ()
         self._empty: tuple[str, ...] = ()
+        self._said: tuple[str, ...] = ()
         model.scene_changed.connect(self._begin)
         model.known_changed.connect(self.refresh)
         model.hits_changed.connect(self.refresh)
@@ -32,18 +37,19 @@ class Notes(QObject):
         scene, known, hits = self.model.scene, self.model.known, self.model.hits
         if hits is not None and self.model.complete:
             self._empty = empty(hits)
-        gathered = (*(scene.notes if scene is not None else ()), *(known.notes if known is not None else ()),
-                    *self._empty)
-        old, self.now = self.now, tuple(dict.fromkeys(gathered))
-        for note in self.now:
-            if note not in old:
+        read = scene.notes if scene is not None else ()
+        gathered = tuple(dict.fromkeys((*read, *(known.notes if known is not None else ()), *self._empty)))
+        for note in gathered:
+            if note not in self._said:
                 self.model.said.emit(note)
+        ours = read if scene is not None and scene.source in BUILT_IN else ()  # nobody's file: not worth a bar
+        old, self._said, self.now = self.now, gathered, tuple(note for note in gathered if note not in ours)
         if self.now != old:
             self.changed.emit()
 
     def _begin(self) -> None:
         """Nothing holds of a new scene but what is known of itself; all is said again."""
-        self.now = self._empty = ()
+        self.now = self._empty = self._said = ()
         self.changed.emit()
         self.refresh()
 
