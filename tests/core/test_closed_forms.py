@@ -1,4 +1,4 @@
-"""Densely sampled sphere, cylinder and slab shrink exactly as predicted (numerics.md 0.8), by the kernels' own f."""
+"""Densely sampled sphere, cylinder and slab shrink exactly as predicted, by the kernels' own f."""
 
 from __future__ import annotations
 

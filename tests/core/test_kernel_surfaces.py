@@ -155,7 +155,7 @@ def test_the_degree_is_lowered_where_points_lie_in_lines() -> None:
     assert (found.state, found.degree) == (r.CONTINUE, 1) and found.f == pytest.approx(0.1, abs=1e-14)
 
 
-# The rows of numerics.md's catalogue that are about evaluators, by their numbers.
+# Cases of the catalogue of extremes that are about evaluators, by their numbers.
 
 def test_1_a_tiny_h_gives_the_plane_of_the_nearest_surfel() -> None:
     points, ahead = tilted_plane([0.0, 0.0, 1.0], [0.0, 0.0, 0.0])
