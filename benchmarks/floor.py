@@ -19,8 +19,8 @@ from tests.reference.tangent import Tangent, dot, mpf
 
 SURFELS, RAYS, H = 2000, 300, 0.12
 STEEPEST = np.radians(60)
-#: Height in h that rays begin at: outside of the balls, so that their searches begin where a ball promises the surface.
-ABOVE = 2.0
+#: Height in h that rays begin at.
+ABOVE = 0.5
 #: Surfels lighter by exp(-60) change nothing that a float64 could show.
 NEGLIGIBLE = 60.0
 SEARCHES = ("iterate", "secant", "newton", "safe")

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.call import search_from
-from jaart.core.kernels.guess import GUESS_WIDTH, STATE, meets
+from jaart.core.kernels.guess import STATE, is_near, meets, show_centre
 from jaart.core.kernels.heap import pop, push
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.leaving import Leave, counting, leave
@@ -37,6 +37,8 @@ NOTHING, ROOM = -1, -2
 
 _ZERO: Any = np.int64(0)
 _NOT_ASKED: Any = np.int64(-1)
+#: Farther than this from what is kept at a ball's centre, in h, no origin is on the surface.
+_BESIDE = 0.4
 #: A node adds fewer entries than this to the heap.
 _LEAF_ROOM = 64
 
@@ -132,10 +134,12 @@ def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, begin: L
 
 
 @kernel(STRICT)
-def holds(balls: Balls, ball: int, o: Vector) -> bool:
-    """Whether a ball holds the ray's origin."""
+def may_be_left(balls: Balls, ball: int, o: Vector, h: float) -> bool:
+    """Whether the ray's origin, which a ball must hold, may be on the surface: what is kept of it is not far."""
     x = (o[0] - balls.centres[ball, 0], o[1] - balls.centres[ball, 1], o[2] - balls.centres[ball, 2])
-    return dot(x, x) <= balls.radii[ball] * balls.radii[ball]
+    if dot(x, x) > balls.radii[ball] * balls.radii[ball]:
+        return False
+    return balls.stretches == 1 or is_near(balls.guesses[balls.slot[ball]], x, _BESIDE * h)
 
 
 @kernel(STRICT)
@@ -178,7 +182,7 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
         ball = item if item < count else item - count
         if item == ROOM or balls.slot[ball] < 0 or balls.slot[ball] >= balls.ready:
             return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, nan, 0, ball)
-        if begin.used < 0 and begin.t == 0.0 and holds(balls, ball, o):
+        if begin.used < 0 and begin.t == 0.0 and may_be_left(balls, ball, o, plan.rule.h):
             begin = leaving(balls, plan, ball, o, d, work, fit)
             end = counting(end, begin)
         start = start_in(balls, plan, ball, o, d, begin, number)
@@ -190,8 +194,7 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
             size = push(keys, items, size, start.t + start.s, count + ball)
             continue
         if plan.how.kind == r.CENTRES:
-            for i in range(GUESS_WIDTH):
-                fit[r.FIT_SIZE + i] = balls.guesses[balls.slot[ball], i]
+            show_centre(balls.guesses[balls.slot[ball]], fit)
         one = search_from(plan.search, balls.sites, plan.rule, plan.how, plan.bounds, d, start, rows, end.rows, work,
                           fit)
         number += 1

@@ -52,6 +52,19 @@ def fit_centres(sites: Sites, plan: Plan, begin: int, guesses: Array, work: Arra
 
 
 @kernel(STRICT)
+def show_centre(row: Array, fit: Array) -> None:
+    """Lay what a row keeps behind the coefficients of a fit, where the search of centres looks for it."""
+    for i in range(GUESS_WIDTH):
+        fit[FIT_SIZE + i] = row[i]
+
+
+@kernel(STRICT)
+def is_near(row: Array, x: Vector, distance: float) -> bool:
+    """Whether a point, relative to the centre, is within a distance of what a row keeps, or nothing is kept."""
+    return int(row[STATE]) != r.CONTINUE or abs(row[HEIGHT] - dot((row[N_X], row[N_Y], row[N_Z]), x)) < distance
+
+
+@kernel(STRICT)
 def meets(row: Array, base: Vector, d: Vector, low: float, high: float, h: float) -> float:
     """The first s in low … high at which base + s·d meets what a row keeps; NaN for none.
 
