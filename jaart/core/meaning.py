@@ -84,7 +84,7 @@ def check_names(names: Iterable[str], scene: Scene, settings: Settings) -> None:
 
 def needs_normals(scene: Scene, settings: Settings, values: Chosen) -> bool:
     """Whether surfels' normals enter at all, so that bare points must be given some."""
-    return (values.normal == "surfel" and values.method not in ("off_centre", "fill_level")) \
+    return (values.normal == "surfel" and weighs(values)) \
         or values.method in ("mahalanobis", "cylinder") or values.search in SIDED or settings.shading == "water"
 
 

@@ -56,6 +56,7 @@ def oriented() -> Scene:
 MADE: dict[str, Callable[[], Scene]] = {"model": model, "lattice": lattice, "bare": bare, "cloud": oriented}
 SETTINGS: dict[str, dict[str, Any]] = {
     "tangent": {}, "safe": {"search": "safe"}, "off_centre": {"method": "off_centre"},
+    "surfel": {"method": "off_centre", "normal": "surfel"},
     "covariance": {"normal": "covariance", "neighbourhood": "knn"}, "cylinder": {"method": "cylinder", "h": 0.6},
     "polynomial": {"method": "polynomial", "search": "secant"}, "fill_level": {"method": "fill_level"},
     "isosurface": {"method": "isosurface", "subdivide": 1},
