@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from jaart.core.isosurface import isosurface
     from jaart.core.notes import notes
     from jaart.core.picture import picture
+    from jaart.core.plan import plan
     from jaart.core.quality import quality
     from jaart.core.render import render
     from jaart.core.scene import Scene
@@ -24,15 +25,16 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-__all__ = ["load", "render", "picture", "trace", "quality", "isosurface", "notes", "stability", "Settings", "Camera",
-           "preset", "Scene", "errors", "__version__"]
+__all__ = ["load", "render", "picture", "trace", "quality", "isosurface", "plan", "notes", "stability", "Settings",
+           "Camera", "preset", "Scene", "errors", "__version__"]
 
 #: Where each public name lives; importing them here would load numpy and numba with the package.
 _HOMES = {
     "load": "jaart.core.io", "render": "jaart.core.render", "trace": "jaart.core.trace",
     "quality": "jaart.core.quality", "Settings": "jaart.core.settings", "Camera": "jaart.core.camera",
     "preset": "jaart.core.settings", "Scene": "jaart.core.scene", "isosurface": "jaart.core.isosurface",
-    "picture": "jaart.core.picture", "notes": "jaart.core.notes", "stability": "jaart.core.study.stability.study",
+    "picture": "jaart.core.picture", "notes": "jaart.core.notes", "plan": "jaart.core.plan",
+    "stability": "jaart.core.study.stability.study",
 }
 
 

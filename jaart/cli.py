@@ -12,6 +12,7 @@ import typer
 from jaart import cli_arguments as typed
 from jaart import cli_files as files
 from jaart import cli_isosurface as meshes
+from jaart import cli_plan as plans
 from jaart import cli_report as report
 from jaart import cli_study as studies
 from jaart.cli_interrupt import interruptible
@@ -109,6 +110,17 @@ def info(scene: SceneName, frame: Frame = None,
 
     record = report.scene_record(load(scene, frame))
     print(json.dumps(record, indent=1, ensure_ascii=False) if as_json else report.scene_table(record))
+
+
+@app.command()
+def plan(scene: SceneName, preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None, frame: Frame = None,
+         as_json: plans.AsJson = False) -> None:
+    """Say what a scene needs with these settings and what it does not, each with its reason, and what auto comes to."""
+    loaded, chosen = files.open_scene(scene, frame, typed.settings(preset, set_ or []), preset, set_)
+
+    from jaart.core.plan import plan as made
+
+    print(plans.text(made(loaded, chosen), as_json))
 
 
 @app.command()

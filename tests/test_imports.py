@@ -38,6 +38,7 @@ from jaart.__main__ import main
 assert main(["render", "standard", "--size", "16x16", "--output", "p.png", "--hits", "h.npz"]) == 0
 assert main(["trace", "standard", "--pixel", "8,8", "--size", "16x16", "--output", "t.json"]) == 0
 assert main(["info", "standard"]) == 0
+assert main(["plan", "standard"]) == 0
 """, tmp_path)
     assert loaded.isdisjoint(HEAVY)
     assert {p.name for p in tmp_path.iterdir()} == {"p.png", "h.npz", "t.json"}

@@ -24,7 +24,7 @@ from jaart.core.kernels import (
 )
 from jaart.core.kernels import records as r
 from jaart.core.kernels.records import Bounds, Plan, Rule, Search
-from jaart.core.meaning import oriented
+from jaart.core.meaning import oriented, shows_gradient
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings
 
@@ -46,7 +46,7 @@ def plan_of(scene: Scene, settings: Settings, values: Chosen) -> Plan:
                  by_value=int(values.method in FITTED), cap=settings.max_iterations, trust=values.trust,
                  growth=int(settings.bail == "growth"), step=values.step,
                  energy=ENERGY_NUMBERS.get(values.method, r.TANGENT_STEP), emphasise=int(settings.emphasise),
-                 level=values.level, true_normal=int(settings.shading_normal == "gradient"))
+                 level=values.level, true_normal=int(shows_gradient(settings)))
     return Plan(rule, how, bounds_of(settings, values), address_of(searcher(values), call.SEARCH))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core import memory
-from jaart.core.chosen import HALF_DIAGONAL, Chosen
+from jaart.core.chosen import HALF_DIAGONAL, Chosen, counts_nearest
 from jaart.core.errors import Cancelled, SettingsError
 from jaart.core.kernels import table
 from jaart.core.kernels.records import Cell, Cells, Sites
@@ -32,7 +32,7 @@ def cell_table(found: Surfels, shape: Cell, values: Chosen, k: int, cancel: Even
     empty = np.full(shape, 255, np.uint8)
     empty[tuple(found.cells.T)] = 0
     table.fill_empty(empty)
-    if values.neighbourhood.endswith("knn") and len(found):
+    if counts_nearest(values.neighbourhood) and len(found):
         sites = _nearest(found, empty, k, exact=values.neighbourhood == "knn")
     else:
         more = HALF_DIAGONAL if values.neighbourhood == "ball" else 0.0

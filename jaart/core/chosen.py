@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from jaart.core import extents
+from jaart.core.cloud import AUTO_H
 from jaart.core.errors import SettingsError
 from jaart.core.groups.surface import ENERGIES
 from jaart.core.kernels.weigh import WENDLAND_END
@@ -40,6 +41,7 @@ NEAR = 0.375
 SHELL = 0.55
 #: Half the diagonal of a cell: as far as a point in it may be from its centre.
 HALF_DIAGONAL = math.sqrt(3) / 2
+_DIAGONAL = ", and half a cell's diagonal"
 
 
 @dataclass(frozen=True)
@@ -67,25 +69,42 @@ class Chosen:
     stride: float
 
 
+#: A value, and in words where it comes from.
+Explained = tuple[Any, str]
+#: Where a value comes from that somebody set.
+AS_SET = "as set"
+
+
 def chosen(scene: Scene, settings: Settings) -> Chosen:
     """The values that a scene gives the settings.
 
     Raises SettingsError for a length out of its range, and for an h so small that no number of units is left.
     """
-    h = _feature_size(scene, settings)
-    neighbourhood = _neighbourhood(scene, settings)
-    radius = _radius(scene, settings, neighbourhood, h)
-    search = _search(settings)
+    return Chosen(**{name: value for name, (value, _) in explained(scene, settings).items()})
+
+
+def explained(scene: Scene, settings: Settings) -> dict[str, Explained]:
+    """The fields of Chosen, each with where its value comes from; see `chosen`."""
     lattice = scene.kind != "cloud"
-    trust = radius if math.isfinite(radius) else LATTICE_RADIUS * h
-    return Chosen(
-        method=settings.method, search=search, weight=settings.weight, normal=_normal(scene, settings),
-        neighbourhood=neighbourhood, h=h, radius=radius, trust=_or_length(scene, settings, "trust", trust),
-        off_centre=_or_length(scene, settings, "max_off_centre", OFF_CENTRE * h),
-        nearest=_or_length(scene, settings, "max_nearest", math.inf if lattice else CLOUD_NEAREST * h),
-        level=_level(settings, h),
-        step=MARCH_STEP * h if isinstance(settings.step, str) else settings.step * (1.0 if lattice else h),
-        stride=STRIDE if isinstance(settings.step, str) else settings.step)
+    found = {"method": (settings.method, AS_SET), "weight": (settings.weight, AS_SET), "search": _search(settings),
+             "normal": _normal(scene, settings), "neighbourhood": _neighbourhood(scene, settings),
+             "h": _feature_size(scene, settings)}
+    h = found["h"][0]
+    found["radius"] = radius, _ = _radius(scene, settings, found["neighbourhood"][0], h)
+    trust = (radius, "the radius") if math.isfinite(radius) else (LATTICE_RADIUS * h, f"{LATTICE_RADIUS:g} h")
+    nearest = (math.inf, "no bound on a lattice") if lattice else (CLOUD_NEAREST * h, f"{CLOUD_NEAREST:g} h in a cloud")
+    return found | {
+        "trust": _or_length(scene, settings, "trust", trust), "level": _level(settings, h),
+        "off_centre": _or_length(scene, settings, "max_off_centre", (OFF_CENTRE * h, "h")),
+        "nearest": _or_length(scene, settings, "max_nearest", nearest), **_strides(settings, h, lattice)}
+
+
+def _strides(settings: Settings, h: float, lattice: bool) -> dict[str, Explained]:
+    """The steps of march and of the uniform traversal."""
+    if isinstance(settings.step, str):
+        return {"step": (MARCH_STEP * h, f"{MARCH_STEP:g} h"), "stride": (STRIDE, f"{STRIDE:g} cell")}
+    step = (settings.step, AS_SET) if lattice else (settings.step * h, f"{settings.step:g} h, as set")
+    return {"step": step, "stride": (settings.step, AS_SET)}
 
 
 def length(scene: Scene, settings: Settings, name: str) -> float:
@@ -102,39 +121,57 @@ def length(scene: Scene, settings: Settings, name: str) -> float:
     return resolved
 
 
-def _or_length(scene: Scene, settings: Settings, name: str, otherwise: float) -> float:
+def _or_length(scene: Scene, settings: Settings, name: str, otherwise: Explained) -> Explained:
     value = getattr(settings, name)
     if value == "none":
-        return math.inf
-    return otherwise if isinstance(value, str) else length(scene, settings, name)
+        return math.inf, "none, as set"
+    return otherwise if isinstance(value, str) else (length(scene, settings, name), _as_set(value))
 
 
-def _feature_size(scene: Scene, settings: Settings) -> float:
+def _as_set(value: Length) -> str:
+    """Where a length comes from that somebody set."""
+    unit = {"": "", "d": "of the diagonal, ", "s": "of the spacing, "}[value.unit]
+    return f"{value.value:g} {unit}{AS_SET}" if unit else AS_SET
+
+
+def _feature_size(scene: Scene, settings: Settings) -> Explained:
+    if settings.h == "auto" and scene.kind != "cloud":
+        return LATTICE_H, f"{LATTICE_H:g} cells on a lattice"
     if settings.h == "auto":
-        return LATTICE_H if scene.kind != "cloud" else extents.cloud_h(scene)
+        return extents.cloud_h(scene), f"{AUTO_H:g} times the edge of the square that a point has to itself"
     h, largest = length(scene, settings, "h"), extents.largest(scene, settings)
     if h < SMALLEST_H * largest:
         raise SettingsError(f"h = {settings.h}: too small for coordinates up to {largest:g}, "
                             f"expected at least {SMALLEST_H * largest:g}")
-    return h
+    assert isinstance(settings.h, Length)
+    return h, _as_set(settings.h)
 
 
-def _neighbourhood(scene: Scene, settings: Settings) -> str:
+def _neighbourhood(scene: Scene, settings: Settings) -> Explained:
     if settings.neighbourhood != "auto":
-        return settings.neighbourhood
-    return "ball" if scene.kind == "cloud" else "cell_ball"
+        return settings.neighbourhood, AS_SET
+    return ("ball", "a cloud has no cells") if scene.kind == "cloud" else ("cell_ball", "one list for each cell")
 
 
-def _radius(scene: Scene, settings: Settings, neighbourhood: str, h: float) -> float:
-    if neighbourhood.endswith("knn"):
-        return math.inf
-    if settings.radius != "auto":
-        return length(scene, settings, "radius")
+def counts_nearest(neighbourhood: str) -> bool:
+    """Whether so many nearest surfels count, however far they are."""
+    return neighbourhood.endswith("knn")
+
+
+def _radius(scene: Scene, settings: Settings, neighbourhood: str, h: float) -> Explained:
+    if counts_nearest(neighbourhood):
+        return math.inf, "the k nearest count"
+    if isinstance(settings.radius, Length):
+        return length(scene, settings, "radius"), _as_set(settings.radius)
     ends = {"hat": 1.0, "squared_hat": 1.0, "wendland": WENDLAND_END}
-    reach = ends.get(settings.weight, LATTICE_RADIUS if scene.kind != "cloud" else CLOUD_RADIUS) * h
+    share = ends.get(settings.weight, LATTICE_RADIUS if scene.kind != "cloud" else CLOUD_RADIUS)
     if settings.weight in ends:
-        return reach + HALF_DIAGONAL if neighbourhood == "cell_ball" else reach
-    return reach if scene.kind == "cloud" else max(reach, _without_jumps(settings, neighbourhood, h))
+        cell = neighbourhood == "cell_ball"
+        return share * h + HALF_DIAGONAL * cell, f"{share:.4g} h, where the weight ends" + _DIAGONAL * cell
+    jumps = 0.0 if scene.kind == "cloud" else _without_jumps(settings, neighbourhood, h)
+    if jumps > share * h:
+        return jumps, "where f jumps by no more than the tolerance" + _DIAGONAL * (neighbourhood == "cell_ball")
+    return share * h, f"{share:g} h"
 
 
 def _without_jumps(settings: Settings, neighbourhood: str, h: float) -> float:
@@ -145,25 +182,30 @@ def _without_jumps(settings: Settings, neighbourhood: str, h: float) -> float:
     return reach + HALF_DIAGONAL if neighbourhood == "cell_ball" else reach
 
 
-def _search(settings: Settings) -> str:
+def _search(settings: Settings) -> Explained:
     if settings.search != "auto":
-        return settings.search
-    return "minimise" if settings.method in ENERGIES else "iterate"
+        return settings.search, AS_SET
+    return ("minimise", "for an energy") if settings.method in ENERGIES else ("iterate", "for what is no energy")
 
 
-def _normal(scene: Scene, settings: Settings) -> str:
+def _normal(scene: Scene, settings: Settings) -> Explained:
     if settings.normal != "auto":
-        return settings.normal
-    return "covariance" if scene.kind == "cloud" and scene.normals is None else "surfel"
+        return settings.normal, AS_SET
+    if scene.kind == "cloud" and scene.normals is None:
+        return "covariance", "the points have no normals"
+    return "surfel", "there are normals"
 
 
-def _level(settings: Settings, h: float) -> float:
-    """The level of an energy or a mesh: as set, else so that surfaces of even sampling have one without holes.
+def _level(settings: Settings, h: float) -> Explained:
+    return (_own_level(settings, h), "as the method needs it") if isinstance(settings.level, str) \
+        else (settings.level, AS_SET)
+
+
+def _own_level(settings: Settings, h: float) -> float:
+    """The level of an energy or a mesh where nobody says: surfaces of even sampling have one without holes.
 
     On a flat dense sheet e_M is c·h², to which a distance of 0.375 h is added, the off-centre bound of [T 2.21].
     """
-    if not isinstance(settings.level, str):
-        return settings.level
     if settings.method == "fill_level":
         return 0.5
     name = settings.energy if settings.method == "isosurface" else settings.method
@@ -190,6 +232,11 @@ def arrival(settings: Settings, chosen: Chosen) -> float:
     h does ends there.
     """
     return settings.tolerance * min(chosen.h, chosen.radius)
+
+
+def tolerance_unit(chosen: Chosen) -> str:
+    """What the tolerance counts in, see `arrival`."""
+    return "h" if chosen.h <= chosen.radius else "radii"
 
 
 def finite(value: Any, otherwise: float) -> float:

@@ -12,7 +12,7 @@ from jaart.core import cloud, orient
 from jaart.core.balls import Cloud
 from jaart.core.chosen import Chosen
 from jaart.core.kernels.gather import Grid
-from jaart.core.meaning import needs_normals
+from jaart.core.meaning import estimates_normals
 from jaart.core.scene import Array, Scene, frozen
 from jaart.core.settings import Settings
 from jaart.core.tree import ball_tree
@@ -42,7 +42,7 @@ def points_of(scene: Scene, settings: Settings, values: Chosen) -> Points:
     assert points is not None
     if scene.normals is not None:
         return Points(points, scene.normals)
-    if not needs_normals(scene, settings, values):
+    if not estimates_normals(scene, settings, values):
         return Points(points, scene.once("no_normals", (), lambda: frozen(np.zeros(points.shape))))
     made = orient.normals_of(scene, settings.orient)
     return Points(points, made.normal, made.notes)

@@ -15,13 +15,18 @@ EMPTY_BELOW = 0.1
 KEPT_BESIDE = 0.25
 
 
+def wanted(settings: Settings) -> bool:
+    """Whether levels are filtered at all."""
+    return settings.filter != "none"
+
+
 def filtered(levels: Array, settings: Settings) -> Array:
     """The levels (nx, ny, nz) after the filter that the settings name; for "none" the same array.
 
     settings: filter is none, thesis, median or gauss; border says what the last two see outside the
     lattice: "open" the nearest cell, "closed" 0.
     """
-    if settings.filter == "none":
+    if not wanted(settings):
         return levels
     if settings.filter == "thesis":
         return frozen(thesis(levels))

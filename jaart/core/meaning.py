@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable
 
 from jaart.core.chosen import Chosen, chosen
 from jaart.core.errors import SettingsError
-from jaart.core.groups.search import STEPPING
-from jaart.core.groups.surface import ENERGIES, FITTED, MESHES
+from jaart.core.groups.search import STEPPING, STRETCHES
+from jaart.core.groups.surface import ENERGIES, FITTED, MESHES, evaluates
 from jaart.core.parameter import shown
 from jaart.core.scene import Scene
 from jaart.core.settings import PARAMETERS, Settings
@@ -84,8 +84,13 @@ def check_names(names: Iterable[str], scene: Scene, settings: Settings) -> None:
 
 def needs_normals(scene: Scene, settings: Settings, values: Chosen) -> bool:
     """Whether surfels' normals enter at all, so that bare points must be given some."""
-    return (values.normal == "surfel" and values.method not in ("off_centre", "fill_level")) \
+    return (values.normal == "surfel" and weighs(values)) \
         or values.method in ("mahalanobis", "cylinder") or values.search in SIDED or settings.shading == "water"
+
+
+def estimates_normals(scene: Scene, settings: Settings, values: Chosen) -> bool:
+    """Whether bare points must be given normals."""
+    return _bare(scene) and needs_normals(scene, settings, values)
 
 
 def oriented(scene: Scene, settings: Settings, values: Chosen) -> bool:
@@ -98,6 +103,26 @@ def oriented(scene: Scene, settings: Settings, values: Chosen) -> bool:
 def steps(values: Chosen) -> bool:
     """Whether the search steps from x to x."""
     return values.search in STEPPING
+
+
+def stretches(values: Chosen) -> bool:
+    """Whether cells or balls are searched from side to side, not from a start in them."""
+    return values.search in STRETCHES or values.method == "cylinder"
+
+
+def fits_centres(scene: Scene, values: Chosen) -> bool:
+    """Whether the plane or polynomial at a ball's centre is kept, where a ray begins."""
+    return scene.kind == "cloud" and not stretches(values)
+
+
+def weighs(values: Chosen) -> bool:
+    """Whether rays or meshes need the average of surfels at points: the levels' mesh and a cylinder do not."""
+    return evaluates(values) and values.method != "cylinder"
+
+
+def shows_gradient(settings: Settings) -> bool:
+    """Whether hits show the surface's own normal, not the averaged one."""
+    return settings.shading_normal == "gradient"
 
 
 def _shown(settings: Settings, values: Chosen, name: str) -> str:

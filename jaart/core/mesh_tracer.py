@@ -14,6 +14,7 @@ from jaart.core.field import Energy, energy_field, energy_gradients
 from jaart.core.kernels import mesh as kernels
 from jaart.core.kernels.mesh import Faces
 from jaart.core.kernels.records import Cells, Out, Plan
+from jaart.core.meaning import shows_gradient
 from jaart.core.meshes import energy_mesh, level_mesh
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
@@ -62,7 +63,7 @@ def mesh_tracer(scene: Scene, settings: Settings, values: Chosen, cells: Cells, 
         energy = Energy(cells, plan, settings.energy, settings.emphasise)
         return energy_mesh(energy, settings.subdivide, values.level, cancel=cancel)
 
-    key, flat = (settings.key("rays"), values), settings.shading_normal == "gradient"
+    key, flat = (settings.key("rays"), values), shows_gradient(settings)
     mesh = scene.once("mesh", key, make)
     return MeshTracer(cells, plan, mesh, scene.once("faces", (key, flat), lambda: faces_of(mesh, flat)))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from jaart.core import cloud, extents, prepare
-from jaart.core.chosen import Chosen, arrival, chosen
+from jaart.core.chosen import Chosen, arrival, chosen, counts_nearest, tolerance_unit
 from jaart.core.cloud_surfels import Points
 from jaart.core.collapse import collapsing
 from jaart.core.records import STATUS, Hits
@@ -64,7 +64,7 @@ def _neighbours(scene: Scene, settings: Settings, values: Chosen, count: int) ->
         said.append("there is a single point: its ball has the radius h")
     elif scene.kind == "cloud" and settings.ball_k > others:
         said.append(f"ball_k = {settings.ball_k}: {_only(others, 'other point')}")
-    if values.neighbourhood.endswith("knn") and PARAMETERS["k"].matters(settings) and settings.k > count > 0:
+    if counts_nearest(values.neighbourhood) and PARAMETERS["k"].matters(settings) and settings.k > count > 0:
         said.append(f"k = {settings.k}: {_only(count, 'point' if scene.kind == 'cloud' else 'surfel')}")
     return tuple(said)
 
@@ -108,9 +108,8 @@ def _precision(scene: Scene, settings: Settings, values: Chosen) -> tuple[str, .
     step, tolerance = float(np.spacing(largest)), arrival(settings, values)
     if step <= tolerance or not PARAMETERS["tolerance"].matters(settings):
         return ()
-    unit = "h" if values.h <= values.radius else "radii"
     return (f"coordinates up to {largest:.4g} are exact to {step:.2g}, and hits no more than that: the tolerance is "
-            f"{settings.tolerance:g} {unit}, a length of {tolerance:.2g}",)
+            f"{settings.tolerance:g} {tolerance_unit(values)}, a length of {tolerance:.2g}",)
 
 
 def _only(count: int, noun: str) -> str:

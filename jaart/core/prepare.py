@@ -14,7 +14,6 @@ from jaart.core.chosen import Chosen
 from jaart.core.cloud_surfels import Points, alone, cloud_of, points_of
 from jaart.core.cylinder import cylinder_tracer
 from jaart.core.extents import extent, raster
-from jaart.core.groups.search import STRETCHES
 from jaart.core.groups.surface import MESHES
 from jaart.core.kernels.records import Cells
 from jaart.core.mesh_tracer import mesh_tracer
@@ -85,9 +84,9 @@ def tracer(scene: Scene, settings: Settings, values: Chosen, cancel: Event | Non
         ball = settings.replace(neighbourhood="cell_ball")
         return cylinder_tracer(values, plan_of(scene, settings, values), lambda near: cells(scene, ball, near, cancel))
     made = cells(scene, settings, values, cancel)
-    stretches = values.search in STRETCHES
     uniform = values.stride if settings.traversal == "uniform" else 0.0
-    return LatticeTracer(made._replace(stretches=int(stretches), uniform=uniform), plan_of(scene, settings, values))
+    return LatticeTracer(made._replace(stretches=int(meaning.stretches(values)), uniform=uniform),
+                         plan_of(scene, settings, values))
 
 
 def balls(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
@@ -101,9 +100,8 @@ def balls(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
 def cloud_tracer(scene: Scene, settings: Settings, values: Chosen) -> CloudTracer:
     """A cloud's balls, with what earlier rays of the same settings asked for."""
     plan, made = plan_of(scene, settings, values), balls(scene, settings, values)
-    stretches = values.search in STRETCHES or values.method == "cylinder"
-
-    return scene.once("cloud_tracer", (id(made), plan), lambda: CloudTracer(made, plan, stretches, not stretches))
+    return scene.once("cloud_tracer", (id(made), plan), lambda: CloudTracer(
+        made, plan, meaning.stretches(values), meaning.fits_centres(scene, values)))
 
 
 def points(scene: Scene, settings: Settings, values: Chosen) -> Surfels | Points:
