@@ -37,19 +37,15 @@ def run_stability(output: Path, quick: bool, cancel: Event, progress: Callable[[
     from jaart.core.study.stability.study import holding, save, stability
 
     results = stability(quick, progress, cancel)
-    print("case verdict  input: got")
     for result in results:
-        print(_line(result))
+        print(_lines(result))
     for path in save(results, output):
         print(f"wrote {path}")
-    print(f"{holding(results)} of {len(results)} cases hold; {path} says what was expected of each, its last column "
-          "whether it came")
+    print(f"{holding(results)} of {len(results)} cases hold")
     return 0 if holding(results) == len(results) else 1
 
 
-def _line(result: Result) -> str:
-    """A case in a line; what was expected is said where something else came."""
-    from jaart.core.study.stability.case import HOLDS
-
-    expected = "" if result.verdict == HOLDS else f"; expected: {result.expected}"
-    return f"{result.number:>4} {result.verdict:<7}  {result.title}: {result.got}{expected}"
+def _lines(result: Result) -> str:
+    """A case of the table: its number, verdict and input, what was expected, and what came."""
+    return (f"{result.number:>3}  {result.verdict:<7}  {result.title}\n"
+            f"              expected  {result.expected}\n              got       {result.got}")

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from jaart.cli_report import hits_line
-from jaart.cli_study import _line
 from jaart.core.io import load
 from jaart.core.quality import quality
 from jaart.core.render import render
 from jaart.core.statistics import statistics
-from jaart.core.study.stability.case import Case, Outcome, counted
 from jaart.plot.statistics import statistics_figure
 
 
@@ -30,10 +28,3 @@ def test_nor_does_the_figure_hold_nan() -> None:
     figure = statistics_figure(statistics(past, quality(past, scene)))
     texts = " ".join(text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_title(loc="left")))
     assert "no relevant rays" in texts and "nan" not in texts
-
-
-def test_a_case_is_a_line_and_says_what_was_expected_where_it_did_not_come() -> None:
-    got = counted({"background": 256, "converged": 1})
-    for holds, said in ((True, "  55 holds    an input: 256 background, 1 converged"),
-                        (False, "  55 differs  an input: 256 background, 1 converged; expected: a hit")):
-        assert _line(Case(55, "name", "an input", "a hit", lambda h=holds: Outcome(got, h)).result()) == said
