@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from jaart.core.errors import RayError
 from jaart.core.records import STATUS_NAMES, Trace
 from jaart.core.render import render
 from jaart.core.scene import Scene
@@ -67,6 +68,13 @@ def test_the_balls_in_order_and_energies_within_them() -> None:
             away = np.linalg.norm(one.origin + t * one.direction - one.balls[:, :3], axis=1)
             assert t >= 0 and (away <= one.balls[:, 3] * (1 + 1e-9)).any()
         assert len(one.curves.t) > 0 or not len(one.balls)
+
+
+def test_a_ray_from_where_there_is_no_precision_is_refused() -> None:
+    scene, settings = fresh("sphere", 300), Settings()
+    with pytest.raises(RayError, match="too far from the scene to have any precision"):
+        trace(scene, settings, (-1e17, 0, 0), (1, 0, 0))
+    assert trace(scene, settings, (-1e3, 0, 0), (1, 0, 0)).hit
 
 
 def test_a_ray_that_pierces_nothing() -> None:

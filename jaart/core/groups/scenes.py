@@ -26,7 +26,7 @@ class LatticeSettings:
              "smooth: central differences after a Gauss filter of width σ.")
     smoothing: float = parameter(
         "number", 0.8, low=0, open_low=True, high=10, step=0.05, unit="cells", group="Lattice", label="Smoothing σ",
-        stage="surfels", scenes=LATTICES, when=lambda s: s.gradient in ("smooth"), needs="gradient = smooth",
+        stage="surfels", scenes=LATTICES, when=lambda s: s.gradient == "smooth", needs="gradient = smooth",
         help="Width of the Gauss filter before the gradient.")
     neighbours: str = parameter(
         "choice", "6", choices=("6", "26"), group="Lattice", label="Interface rule", stage="surfels",

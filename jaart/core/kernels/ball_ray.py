@@ -173,8 +173,8 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
     end, best, visited, number = no_hit(r.BACKGROUND), no_hit(r.BACKGROUND), 0, 0
     found, limit, first, slack = False, inf, inf, _SAME_SHEET * plan.rule.h
     begin = Leave(0.0, _NOT_ASKED, nan)
-    enter, leave = span(balls.tree.low, balls.tree.high, 0, o, inverse)
-    size = push(keys, items, 0, -2.0, -1) if enter <= leave and leave > 0.0 else 0
+    enter, last = span(balls.tree.low, balls.tree.high, 0, o, inverse)
+    size = push(keys, items, 0, -2.0, -1) if enter <= last and last > 0.0 else 0
     while True:
         size, item = next_item(balls, o, d, inverse, limit, keys, items, size)
         if item == NOTHING:

@@ -1,6 +1,7 @@
 """Proof that a piece of a ray meets no surface: bounds of every weight, and so of f, that hold on all of the piece.
 
-The tangent surface is where <Σθn, Σθ(p - x)> = 0. Seen from the middle x of the piece |p - x - s·d|² is
+Guaranteed intersection by bounds is that of Kalra & Barr 1989. The tangent surface [T 2.12, 2.13, 2.15] is where
+<Σθn, Σθ(p - x)> = 0. Seen from the middle x of the piece |p - x - s·d|² is
 |p - x|² - 2s·t + s² with t = <p - x, d>, and exp(-s²/h²) is common to all Gaussian weights: each of them only grows or
 only falls along the ray, and its range on a piece is that of its ends. Bounds are widened by more than rounding can be.
 """

@@ -56,7 +56,7 @@ def a_cap_of_one_step(rays: int) -> Outcome:
 def lists_that_are_too_short(rays: int) -> Outcome:
     """The radius that `auto` stands for is h √(ln 10/τ) and half a cell's diagonal for τ below 0.01, else 3.125 h.
 
-    The row has 1 for 10, with which f jumps by up to three tolerances.
+    The row has 1 for 10, with which f may jump by more than the tolerance.
     """
     fixed = [_jump(rays, Settings(radius=str(radius))) for radius in (2, 3, 4, 6)]
     auto = [_jump(rays, Settings(tolerance=tolerance)) for tolerance in TOLERANCES]
