@@ -63,8 +63,10 @@ def _dress(axes: Axes, colours: Theme, xlabel: str, ylabel: str) -> None:
     from matplotlib.ticker import LogLocator, NullLocator
 
     axes.set_facecolor(colours.face)
+    axes.margins(0.12)
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=8))
+        low, high = axis.get_view_interval()
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 60 * low else (1.0, 3.0), numticks=8))
         axis.set_major_formatter("{x:g}")
         axis.set_minor_locator(NullLocator())
     for side, spine in axes.spines.items():
@@ -74,7 +76,6 @@ def _dress(axes: Axes, colours: Theme, xlabel: str, ylabel: str) -> None:
                      width=0.7, pad=2)
     axes.grid(color=colours.grid, linewidth=0.5)
     axes.set_axisbelow(True)
-    axes.margins(0.12)
     axes.set_xlabel(xlabel, color=colours.text, fontsize=style.TEXT)
     axes.set_ylabel(ylabel, color=colours.text, fontsize=style.TEXT)
 
