@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 #: Programs in the order of their colours, and the field of the theme that each has.
-COLOURS = ("query", "hit", "barycentre", "next", "plane", "full_cell")
-MARKS = "os^vD<"
+COLOURS = ("query", "hit", "barycentre", "next", "plane", "full_cell", "ray")
+MARKS = "os^vD<>"
 
 
 def work_precision(rows: Iterable[Row], theme: str = "light") -> Figure:
@@ -82,7 +82,7 @@ def _dress(axes: Axes, colours: Theme, xlabel: str, ylabel: str) -> None:
 
 def _scenes(rows: list[Row], sizes: list[str]) -> str:
     """What the points of a panel stand for."""
-    scenes = list(dict.fromkeys(row.scene for row in rows))
+    scenes = list(dict.fromkeys(row.scene.partition(" ")[2] for row in rows))
     return f"{', '.join(scenes)} at {', '.join(sizes)}" if scenes else ""
 
 
