@@ -69,7 +69,7 @@ def test_no_ray_of_a_block_has_a_surfel_near_before_it_begins() -> None:
 
 def test_blocks_spare_cells() -> None:
     camera = CAMERAS["from outside"]
-    picture = render(BALLS, Settings(), camera, (96, 96))
+    picture = render(BALLS, Settings(), camera, (320, 320))
     alone = render(BALLS, Settings(), rays=(picture.origin, picture.direction))
     assert picture.cells.sum() < 0.85 * alone.cells.sum()
 
