@@ -5,7 +5,7 @@ A peer that is slow to prepare does so once or twice, its row says how often; ra
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from benchmarks.cases import Case
@@ -38,12 +38,12 @@ class Entry:
     failure: str = ""
 
 
-def rows_of(cases: Iterable[Case], effort: Effort, say: Callable[[str], None] = print) -> list[Row]:
-    """All rows, each block said when it is done."""
+def rows_of(cases: Iterable[Case], effort: Effort) -> list[Row]:
+    """All rows, each block printed when it is done."""
     rows = []
     for case in cases:
         for block in blocks(case, effort):
-            say("\n".join([heading(case.name, block[0].size, case.error_of), *map(line, block), ""]))
+            print("\n".join([heading(case.name, block[0].size, case.error_of), *map(line, block), ""]), flush=True)
             rows += block
     return rows
 
