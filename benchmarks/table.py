@@ -53,7 +53,7 @@ class Row:
 def heading(scene: str, size: str, error_of: str) -> str:
     """The lines above a block of rows."""
     heads = " ".join(f"{head:>{width}}" for _, head, width, _ in COLUMNS)
-    return f"{scene}, {size}{f'; error: {error_of}' if error_of else ''}\n  {'program':24} {heads}"
+    return f"{scene}{f', {size}' if size else ''}{f'; error: {error_of}' if error_of else ''}\n  {'program':24} {heads}"
 
 
 def line(row: Row) -> str:
