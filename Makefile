@@ -1,7 +1,7 @@
 # make run     the window on the built-in sample; SCENE=path/to/scene.npz for another
 # make test    everything the tests need, then style, types, import contracts and all tests
 # make bench   the project's figures, beside those peers that are installed; OPTIONS=--quick for a short run
-# make bench-peers   the same, peers installed first: some 250 MB to load
+# make bench-peers   the same, peers installed first: some 300 MB
 
 SCENE ?= splash
 PYTHON ?= python3

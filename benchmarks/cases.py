@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -22,6 +22,9 @@ from jaart.core.suited import suited
 DATA = Path(os.environ.get("JAART_DATA", Path(__file__).resolve().parents[2] / "shared" / "data")) / "clouds"
 CLOUDS = {"bunny": "bun_zipper.ply", "dragon": "dragon_full.npz"}
 SIZES = ((512, 512), (1920, 1080))
+SMALL = (64, 48)
+#: Presets that a cloud is shown with.
+ON_CLOUDS = ("best", "adamson-alexa")
 
 
 @dataclass(frozen=True)
@@ -35,19 +38,26 @@ class Case:
     error_of: str = ""
 
 
-def all_of_them() -> Iterator[Case]:
-    """Every case, made when it is its turn."""
-    yield from (model(raster, SIZES) for raster in (*standard.RASTERS, 128))
-    yield splash(SIZES)
-    yield bumpy(samples.COUNT, SIZES)
-    yield from (scanned(name, SIZES) for name in CLOUDS)
+#: What makes each case of the whole comparison.
+WHOLE: dict[str, Callable[[tuple[Size, ...]], Case]] = {
+    **{f"standard {raster}^3": partial(lambda raster, sizes: model(raster, sizes), raster)
+       for raster in (*standard.RASTERS, 128)},
+    "splash": lambda sizes: splash(sizes),
+    "bumpy": lambda sizes: bumpy(samples.COUNT, sizes),
+    **{name: partial(lambda name, sizes: scanned(name, sizes), name) for name in CLOUDS},
+}
+
+
+def chosen(names: Sequence[str], sizes: tuple[Size, ...]) -> Iterator[Case]:
+    """The named cases, all where none is named, each made when it is its turn."""
+    yield from (make(sizes) for name, make in WHOLE.items() if name in names or not names)
 
 
 def few() -> Iterator[Case]:
     """Small ones, for a short run."""
-    yield from (model(raster, ((64, 48),)) for raster in (16, 32))
-    yield bumpy(2000, ((64, 48),))
-    yield scanned("no such cloud", ((64, 48),))
+    yield from (model(raster, (SMALL,)) for raster in (16, 32))
+    yield bumpy(2000, (SMALL,), ("best",))
+    yield scanned("no such cloud", (SMALL,))
 
 
 def model(raster: int, sizes: tuple[Size, ...]) -> Case:
@@ -70,10 +80,10 @@ def splash(sizes: tuple[Size, ...]) -> Case:
     return Case("splash", (*ours, peers_embree.marching_cubes(scene.levels)), fitted(scene, sizes))
 
 
-def bumpy(count: int, sizes: tuple[Size, ...]) -> Case:
+def bumpy(count: int, sizes: tuple[Size, ...], presets: Sequence[str] = ON_CLOUDS) -> Case:
     """Points of a smooth surface that is known exactly."""
     scene = samples.bumpy_sphere(count)
-    return Case(f"bumpy {count:,}", on_cloud(scene), fitted(scene, sizes), partial(distance, scene),
+    return Case(f"bumpy {count:,}", on_cloud(scene, presets), fitted(scene, sizes), partial(distance, scene),
                 "mean distance [spacings]")
 
 
@@ -96,9 +106,9 @@ def read(path: Path) -> jaart.Scene:
     return jaart.Scene(str(path), points=np.array(pyvista.read(path).points, np.float64))
 
 
-def on_cloud(scene: jaart.Scene) -> tuple[Contestant | Absent, ...]:
+def on_cloud(scene: jaart.Scene, presets: Sequence[str] = ON_CLOUDS) -> tuple[Contestant | Absent, ...]:
     """The contestants on a cloud."""
-    ours = (Jaart(f"Jaart, {name}", scene, suited(scene, jaart.preset(name))[0]) for name in ("best", "adamson-alexa"))
+    ours = (Jaart(f"Jaart, {name}", scene, suited(scene, jaart.preset(name))[0]) for name in presets)
     return (*ours, *peers_open3d.meshers(scene), peers_pymeshlab.apss(scene))
 
 

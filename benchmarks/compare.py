@@ -21,8 +21,8 @@ class Effort:
     """How often things are measured, and how many seconds a contestant may take for it at each picture."""
 
     repeats: int = 7
-    prep_s: float = 6.0
-    rays_s: float = 12.0
+    prep_s: float = 4.0
+    rays_s: float = 25.0
 
 
 QUICK = Effort(3, 1.0, 1.0)

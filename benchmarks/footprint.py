@@ -26,6 +26,14 @@ def peak(work: Callable[[], T]) -> tuple[T, float | None]:
     return result, None if before is None else max(0.0, (_bytes("VmHWM") - before) / MIB)
 
 
+def resident() -> int | None:
+    """Bytes of memory that the process has now, None where nobody knows."""
+    try:
+        return _bytes("VmRSS")
+    except OSError:
+        return None
+
+
 def _begin() -> int | None:
     """Resident bytes now; the highest mark begins anew."""
     try:

@@ -10,7 +10,7 @@ from pathlib import Path
 #: Columns of the text: a field, its head, its width and its form.
 COLUMNS = (("prep_s", "prep_s", 8, "s"), ("bvh_s", "bvh_s", 7, "s"), ("rays_s", "rays_s", 8, "s"),
            ("rays_least_s", "least", 8, "s"), ("rays_quartiles_s", "quart.", 7, "s"), ("first_s", "first_s", 8, "s"),
-           ("embree_ratio", "/Embree", 7, ".2f"), ("error", "error", 8, ".5f"),
+           ("embree_ratio", "/Embree", 7, ".2f"), ("error", "error", 8, ".3g"),
            ("evaluations_per_hit", "evals", 6, ".2f"), ("hits", "hits", 7, "d"), ("memory_mib", "MiB", 6, ".0f"),
            ("runs", "runs", 5, ""))
 
@@ -53,7 +53,7 @@ class Row:
 def heading(scene: str, size: str, error_of: str) -> str:
     """The lines above a block of rows."""
     heads = " ".join(f"{head:>{width}}" for _, head, width, _ in COLUMNS)
-    return f"{scene}, {size}{f'; error: {error_of}' if error_of else ''}\n  {'program':24} {heads}"
+    return f"{scene}{f', {size}' if size else ''}{f'; error: {error_of}' if error_of else ''}\n  {'program':24} {heads}"
 
 
 def line(row: Row) -> str:

@@ -1,6 +1,7 @@
 """How quickly the window answers: start, stall of its thread, slider to pixels, click to panels.
 
-Run with a display, or under xvfb-run: python benchmarks/window.py. Prints medians over several runs.
+Slider and click in the standard model at 64³, 512×512 pixels. Run with a display, or under xvfb-run:
+python benchmarks/window.py. Prints medians over several runs; with the word "quick" without the starts.
 """
 
 from __future__ import annotations
@@ -15,16 +16,25 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 STARTS, DRAGS, CLICKS = 5, 20, 10
+#: Seconds that the rays of each dragged picture took.
+RAYS: list[float] = []
 
 
 def main() -> None:
-    starts = [start_in_process() for _ in range(STARTS + 1)][1:]
+    starts = [0.0] if "quick" in sys.argv else [start_in_process() for _ in range(STARTS + 1)][1:]
     report("start to first paint", starts, "s", 2)
     window, stalls = opened()
     report("longest stall while panels load", [max(stalls)], "ms")
+    show(window, "standard")
     stalls.clear()
-    report("slider to first pixels", [slider_to_pixels(window, k) for k in range(DRAGS)], "ms")
-    report("click to all ray panels", [click_to_panels(window, k) for k in range(CLICKS)], "ms")
+    drags = [drag(window, k) for k in range(DRAGS)]
+    for name in drags[0]:
+        report(f"slider to {name}", [1000 * times[name] for times in drags], "ms")
+    report("of that, rays", [1000 * seconds for seconds in RAYS], "ms")
+    clicks = [click(window, k) for k in range(CLICKS)]
+    for name in clicks[0]:
+        report(f"click to {name}", [1000 * times[name] for times in clicks], "ms")
+    report("click to all ray panels", [1000 * max(times.values()) for times in clicks], "ms")
     report("longest stall in use", [max(stalls)], "ms")
     window.close()
 
@@ -96,26 +106,39 @@ def opened():
     return window, stalls
 
 
-def slider_to_pixels(window, turn: int) -> float:
-    """Milliseconds from a move of the slider of h to the first paint of a picture made with it."""
+def show(window, scene: str) -> None:
+    """Show a model at 64³ in 512×512 pixels, with a ray picked."""
+    window.model.open(scene)
+    wait(lambda: window.model.scene is not None and window.model.scene.kind == "model" and window.model.idle)
+    window.model.set_settings(window.model.settings.replace(raster=64))
+    wait(lambda: window.model.idle)
+    window.model.pick(230, 300)
+    wait(lambda: window.model.idle)
+    settle(1.0)
+
+
+def drag(window, turn: int) -> dict[str, float]:
+    """Seconds from a move of the slider of h to the first paint of a picture made with it, and of the full one."""
     from qtpy.QtWidgets import QApplication
 
     model, slider = window.model, window.docks["Parameters"].panel.rows["h"].slider
     target = slider.value() + (1 if turn % 20 < 10 else -1)
-    seen = watch_paints(QApplication.instance(), {"view": window.view},
-                        lambda: model.hits is not None and model.hits.settings == model.settings)
+    current = lambda: model.hits is not None and model.hits.settings == model.settings  # noqa: E731
+    seen = watch_paints(QApplication.instance(), {"first pixels": window.view}, current)
+    full = watch_paints(QApplication.instance(), {"full picture": window.view}, lambda: current() and model.complete)
     begin = time.perf_counter()
     slider.setValue(target)
-    wait(lambda: "view" in seen)
-    took = 1000 * (seen["view"] - begin)
+    wait(lambda: seen and full)
     seen.stop()
+    full.stop()
+    RAYS.append(model.hits.ray_s)
     wait(lambda: model.idle)
     settle()
-    return took
+    return {name: at - begin for name, at in {**seen, **full}.items()}
 
 
-def click_to_panels(window, turn: int) -> float:
-    """Milliseconds from a click on a pixel to the paint of the last of the ray's panels."""
+def click(window, turn: int) -> dict[str, float]:
+    """Seconds from a click on a pixel to the first paint of each of the ray's panels."""
     from pyvistaqt import QtInteractor
     from qtpy.QtCore import Qt
     from qtpy.QtTest import QTest
@@ -128,16 +151,17 @@ def click_to_panels(window, turn: int) -> float:
                         lambda: model.trace is not before)
     space = window.docks["3D ray analyzer"].panel.findChild(QtInteractor).render_window
     observer = space.AddObserver("EndEvent", lambda *_: model.trace is not before
-                                 and seen.setdefault("space", time.perf_counter()))
-    place = window.view.place_of((200 + 7 * turn, 300)).toPoint()
+                                 and seen.setdefault("3D ray analyzer", time.perf_counter()))
+    met = model.hits.hit.nonzero()[0]
+    pixel = int(met[(2 * turn + 1) * len(met) // (2 * CLICKS)])
+    place = window.view.place_of((pixel % model.size[0], pixel // model.size[0])).toPoint()
     begin = time.perf_counter()
     QTest.mouseClick(window.view, Qt.MouseButton.LeftButton, pos=place)
     wait(lambda: len(seen) == len(names) + 1)
-    took = 1000 * (max(seen.values(), default=0.0) - begin)
     seen.stop()
     space.RemoveObserver(observer)
     settle()
-    return took
+    return {name: seen[name] - begin for name in (*names, "3D ray analyzer")}
 
 
 def watch_paints(app, widgets, ready=lambda: True):

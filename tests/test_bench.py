@@ -1,4 +1,4 @@
-"""`make bench`: a short run for real, without the peers; and the measures that the comparison rests on."""
+"""What `make bench` runs, with small scenes: the rows, who is missing, and what is saved."""
 
 from __future__ import annotations
 
@@ -6,164 +6,117 @@ import csv
 import os
 import subprocess
 import sys
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
+from xml.etree import ElementTree
 
-import numpy as np
 import pytest
 
-import jaart
-from benchmarks import compare, goals
-from benchmarks.cases import Case, bumpy, model, widened
-from benchmarks.contest import First, Jaart, View, why_absent
-from benchmarks.footprint import peak
-from benchmarks.standard import camera
-from benchmarks.table import Row, line
-from benchmarks.timing import Spread, in_turns, ratios
-from jaart.core import samples
+from benchmarks import cases, goals, scale
+from benchmarks.compare import QUICK, rows_of
+from benchmarks.contest import Absent, why_absent
+from benchmarks.scale_table import Row as Size
+from benchmarks.table import Row
 
 ROOT = Path(__file__).resolve().parent.parent
-SMALL = (24, 16)
-ONCE = compare.Effort(2, 0.0, 0.0)
-#: The run, in a process where no peer is installed.
-ALONE = """
-import runpy, sys
-sys.modules.update(dict.fromkeys(("open3d", "skimage", "pymeshlab")))
-sys.argv = ["run.py", "--quick", "--output", sys.argv[1]]
-runpy.run_path("benchmarks/run.py", run_name="__main__")
-"""
 
 
-@pytest.fixture(scope="module")
-def alone(tmp_path_factory) -> tuple[str, Path]:
-    """What a short run without peers printed, and the folder it saved into."""
-    folder = tmp_path_factory.mktemp("bench")
-    environment = {name: value for name, value in os.environ.items() if name != "JAART_CALL_KERNELS"}
-    done = subprocess.run([sys.executable, "-c", ALONE, str(folder)], cwd=ROOT, capture_output=True, text=True,
-                          env={**environment, "JAART_DATA": "none", "PYTHONPATH": str(ROOT)}, check=False)
+def run(*arguments: str, folder: Path) -> str:
+    """What a script of the benchmarks prints in a process of its own."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-P", *arguments, "--output", str(folder)], cwd=ROOT, env=environment,
+                          capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    return done.stdout, folder
+    return done.stdout
 
 
-def test_a_run_without_peers_has_their_rows_and_says_what_is_missing(alone):
-    with (alone[1] / "peers.csv").open(newline="", encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
-    measured = {(row["scene"], row["program"]) for row in rows if row["rays_s"]}
-    assert measured == {(f"standard {n}^3", f"Jaart, {name}") for n in (16, 32) for name in ("thesis", "best")} | {
-        ("bumpy 2,000", "Jaart, best"), ("bumpy 2,000", "Jaart, adamson-alexa")}
-    absent = {row["program"]: row["note"] for row in rows if not row["rays_s"]}
-    assert absent["marching cubes + Embree"] == "skimage.measure is not installed"
-    assert absent["ball pivoting + Embree"] == absent["Poisson + Embree"] == "open3d is not installed"
-    assert absent["APSS + Embree"] == "pymeshlab is not installed"
-    assert "JAART_DATA names another folder" in absent["every program"]
-    assert all(note in alone[0] for note in absent.values())
+def read(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
 
 
-def test_a_run_saves_what_it_measured(alone):
-    with (alone[1] / "peers.csv").open(newline="", encoding="utf-8") as stream:
-        thesis = next(csv.DictReader(stream))
-    assert float(thesis["error"]) == pytest.approx(0.148, abs=0.002)
-    assert float(thesis["rays_least_s"]) <= float(thesis["rays_s"]) < float(thesis["first_s"]) * 50
-    assert thesis["rays_runs"] in "123"
-    drawn = (alone[1] / "work_precision.svg").read_text(encoding="utf-8")
-    assert drawn.startswith("<?xml") and drawn.rstrip().endswith("</svg>")
-    assert len((alone[1] / "threads.csv").read_text(encoding="utf-8").splitlines()) == 5
+def drawn(path: Path) -> bool:
+    return ElementTree.parse(path).getroot().tag.endswith("svg")
 
 
-def test_the_error_is_none_for_hits_of_the_exact_surface():
-    case = bumpy(2000, (SMALL,))
-    view, surface = case.views[0], samples.standard_bumps()
-    t, normal = surface.hit(view.blank.origin, view.blank.direction)
-    hits = view.hits(np.where(np.isfinite(t), t, np.inf), normal, 0.0)
-    assert hits.hit.sum() == np.isfinite(t).sum() > 50
-    assert case.error(hits) < 1e-12
-    assert case.error(view.hits(np.where(np.isfinite(t), t, np.inf) + 0.01, normal, 0.0)) > 0.01
-    assert jaart.quality(hits, samples.bumpy_sphere(2000)).delta < 1e-12
+def test_a_quick_run_has_a_row_for_every_program_and_saves_its_tables(tmp_path: Path) -> None:
+    printed = run("benchmarks/run.py", "--quick", folder=tmp_path)
+    rows = read(tmp_path / "peers.csv")
+    assert {row["scene"] for row in rows} == {"standard 16^3", "standard 32^3", "bumpy 2,000", "no such cloud"}
+    for row in rows:
+        assert bool(row["rays_s"]) != (not row["prep_s"])
+        assert row["rays_s"] or row["note"], row
+        assert row["program"] in printed
+    ours = {(row["scene"], row["program"]): row for row in rows if row["program"].startswith("Jaart")}
+    assert len(ours) == 5
+    assert all(int(row["hits"]) > 700 and float(row["error"]) < 0.2 for row in ours.values())
+    assert float(ours["standard 32^3", "Jaart, best"]["error"]) < float(ours["standard 16^3", "Jaart, best"]["error"])
+    peers = {row["program"] for row in rows} - {program for _, program in ours}
+    assert peers == {"marching cubes + Embree", "ball pivoting + Embree", "Poisson + Embree", "APSS + Embree",
+                     "every program"}
+    assert [row["work"] for row in read(tmp_path / "threads.csv")][1:] == ["standard, thesis", "standard, best",
+                                                                          "splash, best"]
+    assert drawn(tmp_path / "work_precision.svg")
 
 
-def test_a_lattice_of_the_model_s_levels_is_met_as_the_model_is():
-    case, exact = model(16, (SMALL,)), jaart.load("standard")
-    for contestant in case.contestants[:2]:
-        direct = jaart.render(exact, contestant.settings, case.views[0].camera, SMALL)
-        assert np.array_equal(contestant.first(case.views[0]).hits.t, direct.t, equal_nan=True)
+def test_a_library_that_is_not_installed_is_named() -> None:
+    assert why_absent("jaart", "jaart_has_no_such_peer") == "jaart_has_no_such_peer is not installed"
+    assert why_absent("numpy") == ""
 
 
-def test_a_peer_that_fails_is_a_row():
-    class Broken:
-        name, lazy = "broken", False
-
-        def first(self, view: View) -> First:
-            raise RuntimeError("no mesh came out")
-
-    case = bumpy(500, (SMALL,))
-    ours, = (c for c in case.contestants if c.name == "Jaart, best")
-    rows = compare.rows_of([replace(case, contestants=(ours, Broken()))], ONCE)
-    assert [row.note for row in rows] == ["", "failed: no mesh came out"]
-    assert rows[0].hits > 50 and rows[1].rays_s is None
-    assert "no mesh came out" in line(rows[1])
+def test_a_program_that_cannot_run_is_a_row_that_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+    case = cases.Case("nothing", (Absent("a mesher", "it is not installed"),), ())
+    (row,) = rows_of([case], QUICK)
+    assert (row.program, row.note, row.rays_s) == ("a mesher", "it is not installed", None)
+    assert "it is not installed" in capsys.readouterr().out
 
 
-def test_a_failure_of_jaart_itself_is_none_of_the_rows():
-    scene = jaart.Scene("three", points=np.eye(3))
-    broken = Jaart("Jaart", scene, jaart.Settings(border="closed", method="fill_level"))
-    view = View(jaart.Camera.fit(scene), SMALL, jaart.Settings())
-    with pytest.raises(jaart.errors.JaartError):
-        compare.rows_of([Case("three", (broken,), (view,))], ONCE)
+@pytest.mark.parametrize(("name", "scenes"), [(["standard 16^3"], ["standard 16^3"]), (["splash"], ["splash"])])
+def test_a_named_case_is_made_alone(name: list[str], scenes: list[str]) -> None:
+    assert [case.name for case in cases.chosen(name, (cases.SMALL,))] == scenes
 
 
-def test_marching_cubes_of_a_ball_are_met_where_it_is():
-    for needed in ("skimage", "open3d"):
-        if why_absent(needed):
-            pytest.skip(why_absent(needed))
-    case = model(16, (SMALL,))
-    rows = compare.rows_of([case], ONCE)
-    assert rows[2].program == "marching cubes + Embree"
-    assert rows[2].embree_ratio == 1.0
-    assert abs(rows[2].error - 0.14) < 0.02
-    assert abs(rows[2].hits - rows[1].hits) < 0.1 * rows[1].hits
+def lattice_rows(thesis: float, best: float) -> list[Row]:
+    place = {"scene": "standard 64^3", "size": "512x512", "rays_s": 1.0}
+    return [Row(**place, program="Jaart, thesis", embree_ratio=thesis, error=0.045),
+            Row(**place, program="Jaart, best", embree_ratio=best, error=0.012),
+            Row(**place, program="marching cubes + Embree", embree_ratio=1.0, error=0.06)]
 
 
-def test_a_wide_picture_shows_as_much_from_top_to_bottom():
-    square, wide = camera(16), widened(camera(16), (300, 200))
-    _, top = square.rays((200, 200), np.array([100]))
-    _, same = wide.rays((300, 200), np.array([150]))
-    up = square.frame()[1]
-    assert float((same @ up)[0]) == pytest.approx(float((top @ up)[0]), abs=2e-3)
+def test_goals_are_read_off_the_rows() -> None:
+    place = {"scene": "bumpy 67,038", "size": "512x512", "rays_s": 1.0}
+    clouds = [Row(**place, program="Jaart, best", first_s=0.5, hits=1000),
+              Row(**place, program="ball with holes", first_s=1.0, hits=900),
+              Row(**place, program="whole", first_s=6.0, hits=1000)]
+    text = "\n".join(goals.lines([*lattice_rows(1.2, 2.5), *clouds]))
+    assert "thesis: rays 1.20 times those of Embree, at most 1.3 wanted; delta 0.75" in text
+    assert "best: rays 2.50 times" in text and "delta 0.20" in text
+    assert "first picture 12.00 times as soon as with whole" in text
 
 
-def test_contestants_take_turns_and_slow_ones_drop_out():
-    order: list[str] = []
-    given = in_turns({"a": lambda: order.append("a"), "b": lambda: order.append("b")}, 3, float("inf"))
-    assert order == ["a", "b"] * 3 and given["a"] == [None] * 3
-    assert {name: len(made) for name, made in in_turns({"a": int, "b": int}, 3, 0.0).items()} == {"a": 1, "b": 1}
+def sizes(printed: str, kind: str) -> Sequence[str]:
+    return [line for line in printed.splitlines() if line.startswith(f"  {kind} ")]
 
 
-def test_a_spread_is_what_numpy_says():
-    values = (3.0, 1.0, 2.0, 7.0, 5.0)
-    low, high = np.percentile(values, (25, 75))
-    assert (Spread(values).median, Spread(values).least, Spread(values).quartiles) == (3.0, 1.0, high - low)
-    assert ratios((2.0, 9.0, 4.0), (1.0, 3.0)).values == (2.0, 3.0)
-    assert ratios((), (1.0,)) is None
+def test_scale_measures_each_size_and_saves(tmp_path: Path) -> None:
+    arguments = ("--lattices", "16", "--clouds", "1000", "2000", "--size", "32", "32")
+    printed = run("-m", "benchmarks.scale", *arguments, folder=tmp_path)
+    rows = read(tmp_path / "scale.csv")
+    assert [(row["kind"], row["size"], row["note"]) for row in rows] == [
+        ("lattice", "16", ""), ("cloud", "1000", ""), ("cloud", "2000", "")]
+    assert [int(row["data_bytes"]) for row in rows] == [8 * 16**3, 24 * 1000, 24 * 2000]
+    for row in rows:
+        named = dict(pair.split("=") for pair in row["arrays"].split(";"))
+        whole = int(row["array_bytes"]) / int(row["items"])
+        assert 0.95 * whole <= sum(map(float, named.values())) <= 1.05 * whole
+        assert int(row["touched"]) > 0 and int(row["hits"]) > 0
+    assert len(sizes(printed, "cloud")) == 2 + 1  # the rows, and the arrays of the largest
+    assert drawn(tmp_path / "scale.svg")
 
 
-def test_memory_at_the_peak_is_seen():
-    made, taken = peak(lambda: np.ones(1 << 23).sum())
-    assert made == 1 << 23
-    if taken is None:
-        pytest.skip("the system does not tell")
-    assert 60 < taken < 100
-
-
-def test_goals_are_read_off_the_rows_and_a_mesh_with_holes_is_no_peer():
-    def row(scene: str, program: str, **values: object) -> Row:
-        return Row(scene=scene, size=goals.SIZE, program=program, rays_s=1.0, **values)
-
-    lattice = [row("standard 64^3", "Jaart, thesis", embree_ratio=2.5, error=0.04),
-               row("standard 64^3", "Jaart, best", embree_ratio=5.0, error=0.01),
-               row("standard 64^3", "marching cubes + Embree", error=0.05)]
-    cloud = [row("bumpy 67,038", "Jaart, best", first_s=0.5, hits=1000),
-             row("bumpy 67,038", "ball pivoting + Embree", first_s=1.0, hits=900),
-             row("bumpy 67,038", "Poisson + Embree", first_s=6.0, hits=1000)]
-    thesis, best, clouds = goals.lines([*lattice, *cloud])[1:]
-    assert "2.50 times" in thesis and "5.00 times" in best and "0.20 times its own" in best
-    assert "12.00 times as soon as with Poisson" in clouds
+def test_a_size_that_would_not_fit_is_not_tried() -> None:
+    measured = Size(kind="cloud", size=1000, data_bytes=24_000, items=1000, peak_bytes=300_000.0)
+    row = scale.row_of("cloud", 10**15, (32, 32), [measured])
+    if scale.available() is None:
+        pytest.skip("this system does not say how much memory is free")
+    assert row.items is None and row.note.startswith("not tried: would need some 288 PiB")

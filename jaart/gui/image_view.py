@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from qtpy.QtCore import QPointF, QRectF, QSize, Qt, QTimer
 from qtpy.QtGui import QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
 from qtpy.QtWidgets import QApplication, QWidget
@@ -9,6 +11,8 @@ from qtpy.QtWidgets import QApplication, QWidget
 from jaart.core.camera import Camera
 from jaart.core.picture import plain
 from jaart.core.quality import known
+from jaart.core.records import Hits
+from jaart.core.settings import PARAMETERS, Settings
 from jaart.core.shade import shade
 from jaart.gui import navigation, overlay, theme
 from jaart.gui.model import SceneModel
@@ -32,6 +36,8 @@ class ImageView(QWidget):
         self.setMinimumSize(240, 200)
         self.setFont(theme.tabular(self.font()))
         self.model, self.image = model, QImage()
+        self._results: tuple[Any, ...] = (None, None, None)
+        self._values: tuple[Any, ...] = ()
         self.hovered: tuple[int, int] | None = None
         self._pressed: QPointF | None = None
         self._last = QPointF()
@@ -48,17 +54,25 @@ class ImageView(QWidget):
         return QSize(820, 640)
 
     def refresh(self) -> None:
-        """Colour the hits again."""
+        """Colour the hits again, if anything that their colours depend on has changed."""
         model, hits = self.model, self.model.hits
         if hits is None:
-            self.image = QImage()
+            self.image, self._values = QImage(), ()
         elif model.quality is not None or not model.map.endswith("_error") or not self._was_exact():
-            pixels = model.shader.colours
-            if pixels is None:
-                pixels = shade(hits, model.map, model.quality, model.theme, plain(model.settings))
-            height, width = pixels.shape[:2]
-            self.image = QImage(pixels.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
+            self._colour(hits)
         self.update()
+
+    def _colour(self, hits: Hits) -> None:
+        model, settings = self.model, plain(self.model.settings)
+        errors = model.quality if model.map.endswith("_error") else None
+        finished = model.shader.colours
+        results, values = (hits.t, errors, finished), (model.map, model.theme, *shading(settings))
+        if values == self._values and all(one is other for one, other in zip(results, self._results, strict=True)):
+            return
+        self._results, self._values = results, values
+        pixels = shade(hits, model.map, errors, model.theme, settings) if finished is None else finished
+        height, width = pixels.shape[:2]
+        self.image = QImage(pixels.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
 
     def _was_exact(self) -> bool:
         """Whether errors are on show that the next full picture will bring anew."""
@@ -206,3 +220,8 @@ class ImageView(QWidget):
             self.model.clear_pick()
         else:
             super().keyPressEvent(event)
+
+
+def shading(settings: Settings) -> tuple[Any, ...]:
+    """The values that enter the colours of hits."""
+    return tuple(getattr(settings, about.name) for about in PARAMETERS.values() if about.stage == "shade")

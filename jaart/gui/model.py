@@ -256,12 +256,14 @@ class SceneModel(QObject):
 
     def _show(self, hits: Hits, quality: Quality | None) -> None:
         self._slow.stop()
+        shown = self.hits is not None and self.hits.t is hits.t  # already; here come its errors
         self.hits, self.quality = results.with_settings(hits, self.settings), quality
         self.hits_changed.emit()
         if self.complete:
             self._full = self.hits, self.quality
             self.progressed.emit(1.0)
-            self._trace()
+            if not shown:
+                self._trace()
 
     def _trace(self) -> None:
         if self.scene is None or self.camera is None or self.picked is None or self.fault is not None:
