@@ -113,14 +113,13 @@ def info(scene: SceneName, frame: Frame = None,
 
 
 @app.command()
-def plan(scene: SceneName, preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None, frame: Frame = None,
+def plan(scene: SceneName, size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None,
+         preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None, frame: Frame = None,
          as_json: plans.AsJson = False) -> None:
-    """Say what a scene needs with these settings and what it does not, each with its reason, and what auto comes to."""
+    """Say what a picture needs with these settings and what it does not, each with its reason, and what auto is."""
+    shape = typed.size(size)
     loaded, chosen = files.open_scene(scene, frame, typed.settings(preset, set_ or []), preset, set_)
-
-    from jaart.core.plan import plan as made
-
-    print(plans.text(made(loaded, chosen), as_json))
+    print(plans.text(plans.made(loaded, chosen, camera or [], shape), as_json))
 
 
 @app.command()
@@ -209,10 +208,12 @@ def trace(
 
     from jaart.core.chosen import chosen as values_of
     from jaart.core.trace import trace as follow
+    from jaart.core.visible import seen
 
     if at is not None:
         view = typed.camera(camera or [], loaded, chosen, shape)
         ray, up = typed.pixel_ray(view, shape, at), view.up or up
+        chosen = seen(loaded, chosen, view, shape)
     assert ray is not None
     report.say_compiling(loaded, chosen)
     followed = follow(loaded, chosen, *ray, pixel=at)

@@ -128,9 +128,10 @@ def _taken(hits: Hits, scene: Scene) -> list[str]:
     """Balls gathered and planes or polynomials kept at their centres, so far; degrees lowered."""
     from jaart.core.balls import CloudTracer
     from jaart.core.prepare import prepared
+    from jaart.core.visible import of_hits
 
     parts = []
-    tracer = prepared(scene, hits.settings).tracer
+    tracer = prepared(scene, of_hits(scene, hits)).tracer
     if isinstance(tracer, CloudTracer):
         fits = f", {_count(tracer.fits, 'fit')} at their centres beside the evaluations" if tracer.fits else ""
         parts.append(f"{_count(tracer.gathered, 'ball')} gathered{fits}")

@@ -9,6 +9,7 @@ from jaart.core.scene import Scene
 from jaart.core.settings import Settings
 from jaart.core.stage import Stage, stage
 
+_PICKED = "the mesh of the levels needs none; made once a ray is picked, for the energies along it"
 _NO_LEVELS = "a cloud has no fill levels"
 
 
@@ -23,8 +24,10 @@ def _lattice(scene: Scene, settings: Settings) -> tuple[Stage, ...]:
         stage("fill levels", scene.kind == "model", f"the solids are filled, {settings.filling}",
               "they were read from the file", "raster", "filling", "subdivision"),
         stage("filter", filters.wanted(settings), settings.filter, "none is asked for", "filter"),
-        Stage("gradient", True, "a surfel lies along it, and its normal is against it", ("gradient", "smoothing")),
-        Stage("placement", True, "each interface cell gives a surfel", ("placement", "neighbours", "border")),
+        stage("gradient", evaluates(settings), "a surfel lies along it, and its normal is against it", _PICKED,
+              "method", "gradient", "smoothing"),
+        stage("placement", evaluates(settings), "each interface cell gives a surfel", _PICKED,
+              "method", "placement", "neighbours", "border"),
         Stage("estimated normals", False, "surfels of a lattice have the gradient's"))
 
 
@@ -43,7 +46,7 @@ def _table(scene: Scene, settings: Settings, values: Chosen) -> Stage:
     if scene.kind == "cloud":
         return Stage("cell table", False, "a cloud has no cells")
     if not evaluates(values):
-        return Stage("cell table", True, "rays need none; it is for the energies along a picked ray", ("method",))
+        return Stage("cell table", False, _PICKED, ("method",))
     if values.method == "cylinder":
         return Stage("cell table", True, "of all surfels that a cylinder in a cell may hold", ("method", "h"))
     return Stage("cell table", True, f"{_near(settings, values)} of each cell", ("neighbourhood", "radius", "k"))

@@ -11,7 +11,7 @@ from threading import Event
 
 import numpy as np
 
-from jaart.core import extents, memory, prepare
+from jaart.core import extents, memory, prepare, visible
 from jaart.core.camera import Camera, check_size
 from jaart.core.errors import Cancelled, RayError
 from jaart.core.kernels.pinhole import View, write_rays
@@ -46,7 +46,7 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
     settings = settings or preset("best")
     job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays, any_hit)
     warm_up(scene, settings)
-    ready = prepare.prepared(scene, settings, cancel)
+    ready = prepare.prepared(scene, visible.seen(scene, settings, job.camera, size), cancel)
     begin = time.perf_counter()
     out = columns_for(job.count)
     passes = coarse_passes(job.size) if picture and job.size else [(1, np.arange(job.count))]

@@ -44,4 +44,5 @@ def columns_for(count: int) -> Out:
     return Out(t=np.full(count, np.nan), point=np.full((count, 3), np.nan), normal=np.full((count, 3), np.nan),
                energy=np.full(count, np.nan), off_centre=np.full(count, np.nan), iterations=numbers(),
                evaluations=numbers(), neighbours=numbers(), cells=numbers(),
-               lowered=numbers(), gap=np.full(count, np.nan), status=np.zeros(count, np.uint8))
+               lowered=numbers(), gap=np.full(count, np.nan), status=np.zeros(count, np.uint8),
+               starts=numbers(), eigenvectors=numbers(), gradients=numbers())

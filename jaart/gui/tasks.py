@@ -104,6 +104,8 @@ def _known(scene: Scene, settings: Settings, values: Chosen) -> Known:
 def ray(scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int], pixel: tuple[int, int]) -> Trace:
     """The ray through a pixel with every step."""
     from jaart.core.trace import trace
+    from jaart.core.visible import seen
 
+    settings = seen(scene, settings, camera, size)
     origins, directions = camera.rays(size, np.array([pixel[0] + pixel[1] * size[0]]))
     return trace(scene, settings, origins[0], directions[0], pixel=pixel)

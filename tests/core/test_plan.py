@@ -226,7 +226,7 @@ def test_the_values_are_those_that_rays_are_traced_with(made: str, name: str) ->
     scene, settings = MADE[made](), Settings(**SETTINGS[name])
     used = prepare.prepared(scene, settings).values
     for value in plan(scene, settings).values:
-        expected = arrival(settings, used) if value.name == "tolerance" else getattr(used, RESOLVED[value.name])
+        expected = arrival(used) if value.name == "tolerance" else getattr(used, RESOLVED[value.name])
         assert value.value == expected and value.origin
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.call import search_from
+from jaart.core.kernels.counts import write_counts
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.leaving import FARTHEST, Leave, counting, least_of_energies, leave
 from jaart.core.kernels.log import end_log
@@ -243,5 +244,6 @@ def trace_rays(cells: Cells, plan: Plan, origins: Array, directions: Array, pixe
         d = (directions[to, 0], directions[to, 1], directions[to, 2])
         end = trace_ray(cells, plan, o, d, log, scratch, fitted)
         write_end(out, to, end)
+        write_counts(out, to, fitted)
         written = end.rows
     return written
