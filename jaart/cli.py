@@ -13,6 +13,7 @@ from jaart import cli_arguments as typed
 from jaart import cli_files as files
 from jaart import cli_isosurface as meshes
 from jaart import cli_plan as plans
+from jaart import cli_progress as bars
 from jaart import cli_report as report
 from jaart import cli_study as studies
 from jaart.cli_interrupt import interruptible
@@ -42,7 +43,8 @@ def run(arguments: list[str]) -> int:
     command = typer.main.get_command(app)
     try:
         words = typed.complete(arguments, getattr(command, "commands", {}))
-        status = command.main(words, prog_name="jaart", standalone_mode=False)
+        with bars.shown():
+            status = command.main(words, prog_name="jaart", standalone_mode=False)
     except JaartError as error:
         return _fail(str(error), 1)
     except _USAGE as error:
@@ -58,6 +60,7 @@ def run(arguments: list[str]) -> int:
     except MemoryError:
         return _fail("not enough memory for this scene and size", 1)
     if status == 130:  # what the parser makes of Ctrl-C as well
+        exec("")  # else an interrupt while a module was loaded ends the process by a signal when it is done
         return _fail("interrupted", 130)
     return status if isinstance(status, int) else 0
 
@@ -170,14 +173,14 @@ def render(
 
     report.say_compiling(loaded, chosen)
     with interruptible() as cancel:
-        with report.progress_bar() as progress:
+        with bars.counted("rays") as progress:
             found = trace_rays(loaded, chosen, view, shape, rays=listed, threads=threads, progress=progress,
                                cancel=cancel)
         errors = quality(found, loaded) if loaded.model is not None or map_.endswith("_error") else None
         print(report.hits_line(found, loaded, errors))
         report.say_notes(loaded, chosen, found)
         if output is not None:
-            with report.progress_bar() as progress:
+            with bars.counted("light") as progress:
                 colours = finish(found, loaded, map_, errors, cancel=cancel, progress=progress, threads=threads)
             files.write_picture(colours, found, loaded, errors, map_, output)
     if hits is not None:
@@ -242,7 +245,7 @@ def statistics(
     from jaart.core.render import render as trace_rays
 
     report.say_compiling(loaded, chosen)
-    with interruptible() as cancel, report.progress_bar() as progress:
+    with interruptible() as cancel, bars.counted("rays") as progress:
         found = trace_rays(loaded, chosen, view, shape, threads=threads, progress=progress, cancel=cancel)
     errors = quality(found, loaded)
     print(report.hits_line(found, loaded, errors))
@@ -261,7 +264,7 @@ def isosurface(
     loaded, chosen = files.open_scene(scene, frame, chosen, preset, set_, meshes.IMPLIED)
     along = meshes.direction_of(energy, direction, camera or [], loaded, chosen)
     report.say_compiling(loaded, chosen)
-    with interruptible() as cancel, report.progress_bar("layer") as progress:
+    with interruptible() as cancel, bars.counted("layers of cells") as progress:
         meshes.write(loaded, chosen, energy, along, output, cancel, progress)
 
 
@@ -272,7 +275,7 @@ def study(name: studies.StudyName, output: studies.Folder, quick: studies.Quick 
     stability: every stiff and extreme case, with what was expected and what came of it.
     """
     studies.check(name, output)
-    with interruptible() as cancel, report.progress_bar("case") as progress:
+    with interruptible() as cancel, bars.counted("cases", alone=True) as progress:
         return studies.run_stability(output, quick, cancel, progress)
 
 

@@ -178,10 +178,10 @@ def _radius(scene: Scene, settings: Settings, neighbourhood: str, h: float) -> E
 
 def _without_jumps(settings: Settings, neighbourhood: str, h: float) -> float:
     """The radius at whose end f jumps by no more than the tolerance; 0 where that is not asked for."""
-    coarse = isinstance(settings.tolerance, str) or settings.tolerance >= COARSE
-    if coarse or not PARAMETERS["tolerance"].matters(settings):
+    fine = finite(settings.tolerance, COARSE)
+    if fine >= COARSE or not PARAMETERS["tolerance"].matters(settings):
         return 0.0
-    reach = h * math.sqrt(-math.log(NEGLIGIBLE * max(settings.tolerance, float(np.finfo(np.float64).eps))))
+    reach = h * math.sqrt(-math.log(NEGLIGIBLE * max(fine, float(np.finfo(np.float64).eps))))
     return reach + HALF_DIAGONAL if neighbourhood == "cell_ball" else reach
 
 

@@ -51,7 +51,7 @@ def finish(hits: Hits, scene: Scene, map: str = "shaded", quality: Quality | Non
     settings: how to shade, those of the hits when None; several samples a pixel are traced anew, and the light they
     bring is averaged. A number in false colour is that of the one ray of a hit. Raises what `shade` raises.
     """
-    settings = visible.seen(scene, settings or hits.settings, hits.camera, hits.size)
+    settings = settings or hits.settings
     if _samples(settings, map) == 1 or hits.camera is None:
         return shade(hits, map, quality, theme, settings, scene, threads, cancel)
     return _averaged(hits, scene, theme, settings, cancel, progress, threads)

@@ -37,7 +37,8 @@ class Hits:
     status: index into STATUS_NAMES; starts: searches begun; eigenvectors: of covariances, for n(x); gradients: passes
     over the surfels for ∇f in closed form.
     size: (width, height) of a picture, row by row from the top, None for a list of rays.
-    prep_s, ray_s: wall seconds of preparation and of all rays.
+    prep_s, ray_s: wall seconds of preparation and of all rays; gathered, fits: places of a cloud made ready for these
+    rays, and planes or polynomials kept at their centres.
     """
 
     origin: Array
@@ -62,6 +63,8 @@ class Hits:
     size: tuple[int, int] | None = None
     prep_s: float = 0.0
     ray_s: float = 0.0
+    gathered: int = 0
+    fits: int = 0
 
     @property
     def hit(self) -> NDArray[np.bool_]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from jaart.core import extents, memory, prepare, visible
 from jaart.core.camera import Camera, check_size
+from jaart.core.counters import Made, made_by, since
 from jaart.core.errors import Cancelled, RayError
 from jaart.core.kernels.pinhole import View, write_rays
 from jaart.core.kernels.records import Out
@@ -47,7 +48,7 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
     job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays, any_hit)
     warm_up(scene, settings)
     ready = prepare.prepared(scene, visible.seen(scene, settings, job.camera, size), cancel)
-    begin = time.perf_counter()
+    before, begin = made_by(ready.tracer), time.perf_counter()
     out = columns_for(job.count)
     passes = coarse_passes(job.size) if picture and job.size else [(1, np.arange(job.count))]
     done = 0
@@ -56,8 +57,8 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
             _trace_all(pool, ready, job, pixels, out, _Watch(progress, cancel, done, job.count))
             done += len(pixels)
             if picture and step > 1:
-                picture(_every(step, job, out, settings, ready.seconds, time.perf_counter() - begin))
-    return _every(1, job, out, settings, ready.seconds, time.perf_counter() - begin)
+                picture(_every(step, job, out, settings, ready, before, begin))
+    return _every(1, job, out, settings, ready, before, begin)
 
 
 @dataclass(frozen=True)
@@ -159,8 +160,9 @@ def _wait(tasks: list[Future[int]], watch: _Watch) -> None:
         watch.progress(done, watch.total)
 
 
-def _every(step: int, job: _Job, out: Out, settings: Settings, prep_s: float, ray_s: float) -> Hits:
-    """The hits of every so many pixels, as a smaller picture."""
+def _every(step: int, job: _Job, out: Out, settings: Settings, ready: Prepared, before: Made, begin: float) -> Hits:
+    """The hits of every so many pixels, as a smaller picture, and what was made and how long it took since `begin`."""
+    ray_s, made = time.perf_counter() - begin, since(before, ready.tracer)
     columns = {"origin": job.origins, "direction": job.directions, **out._asdict()}
     size = job.size
     if step > 1 and size is not None:
@@ -169,4 +171,5 @@ def _every(step: int, job: _Job, out: Out, settings: Settings, prep_s: float, ra
         size = (-(-size[0] // step), -(-size[1] // step))
     for column in columns.values():
         column.flags.writeable = False
-    return Hits(**columns, settings=settings, camera=job.camera, size=size, prep_s=prep_s, ray_s=ray_s)
+    return Hits(**columns, settings=settings, camera=job.camera, size=size, prep_s=ready.seconds, ray_s=ray_s,
+                gathered=made.gathered, fits=made.fits)
