@@ -19,8 +19,8 @@ from jaart.core.settings import PARAMETERS, Settings
 
 #: A step that ends a search is at most this share of what can be seen; the hit is nearer yet, by the steps' shrinking.
 SHARE = 0.1
-#: Median distance of planes and of fitted polynomials from the true surface, in h² over the scene's longest edge: from
-#: below, see benchmarks/auto.py. h²/2R is what a sphere shrinks by.
+#: About the distance of planes and of fitted polynomials from the true surface, in h² over the scene's longest edge:
+#: on lattices a third of the medians of benchmarks/auto.py, in clouds more. h²/2R is what a sphere shrinks by.
 ERROR, FITTED_ERROR = 1.0, 0.1
 #: The coarsest tolerance, in h: the sources' own.
 COARSEST = 0.125
@@ -33,12 +33,12 @@ def pixel(scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int
 
     size: (width, height) of the picture.
     """
+    edge = camera.view(size).pixel
     if camera.ortho is not None:
-        return camera.ortho / max(size)
+        return edge
     low, high = extents.bounds(scene, settings)
     eye: Array = np.asarray(camera.eye)
-    away = float(np.linalg.norm(eye - np.clip(eye, low, high)))
-    return 2 * math.tan(math.radians(camera.fov) / 2) / max(size) * away
+    return edge * float(np.linalg.norm(eye - np.clip(eye, low, high)))
 
 
 def model_error(scene: Scene, settings: Settings, h: float) -> float:
