@@ -16,7 +16,9 @@ _NO_LEVELS = "a cloud has no fill levels"
 def scene_stages(scene: Scene, settings: Settings, values: Chosen) -> tuple[Stage, ...]:
     """What is made before the first ray, in its order."""
     surfels = _cloud(scene, settings, values) if scene.kind == "cloud" else _lattice(scene, settings)
-    return (*surfels, _table(scene, settings, values), _balls(scene, settings, values), *_mesh(settings, values))
+    table = _table(scene, settings, values)
+    return (*surfels, table, _distances(scene, table), _balls(scene, settings, values), *_mesh(settings, values),
+            _tree(scene, values))
 
 
 def _lattice(scene: Scene, settings: Settings) -> tuple[Stage, ...]:
@@ -49,16 +51,30 @@ def _table(scene: Scene, settings: Settings, values: Chosen) -> Stage:
         return Stage("cell table", False, _PICKED, ("method",))
     if values.method == "cylinder":
         return Stage("cell table", True, "of all surfels that a cylinder in a cell may hold", ("method", "h"))
-    return Stage("cell table", True, f"{_near(settings, values)} of each cell", ("neighbourhood", "radius", "k"))
+    return Stage("cell table", True, f"{_near(settings, values)} of each cell near one",
+                 ("neighbourhood", "radius", "k"))
+
+
+def _distances(scene: Scene, table: Stage) -> Stage:
+    """The distance of each cell from one with a surfel."""
+    why_not = "a cloud has no cells" if scene.kind == "cloud" else "made with the table"
+    return stage("distance field", table.runs, "rays skip so many empty cells", why_not)
+
+
+def _tree(scene: Scene, values: Chosen) -> Stage:
+    """What rays walk down where they do not cross cells."""
+    over = "the triangles" if values.method in MESHES else "the balls"
+    return stage("tree", scene.kind == "cloud" or values.method in MESHES, f"over {over}",
+                 "rays go from cell to cell; a lattice needs none", "method")
 
 
 def _balls(scene: Scene, settings: Settings, values: Chosen) -> Stage:
     """The balls that rays pierce."""
     if scene.kind != "cloud":
-        return Stage("balls", False, "cells take their place; a lattice needs no tree")
+        return Stage("balls", False, "cells take their place")
     if values.method == "cylinder":
-        return Stage("balls", True, "one of radius h around each point, that of its disc, in a tree", ("method", "h"))
-    return Stage("balls", True, f"those that cover the points, in a tree; {_near(settings, values)} of each are "
+        return Stage("balls", True, "one of radius h around each point, that of its disc", ("method", "h"))
+    return Stage("balls", True, f"those that cover the points; {_near(settings, values)} of each are "
                  "gathered when a ray first asks", ("ball_k", "neighbourhood", "radius", "k"))
 
 
@@ -73,5 +89,5 @@ def _mesh(settings: Settings, values: Chosen) -> tuple[Stage, ...]:
     return (
         stage("energy field", sampled, f"the energy is sampled {settings.subdivide} times along each cell's edge",
               "no energy's isosurface is asked for", "method", "energy", "subdivide"),
-        stage("mesh", values.method in MESHES, f"marching cubes at level {values.level:g}, in a tree",
+        stage("mesh", values.method in MESHES, f"marching cubes at level {values.level:g}",
               "rays search the surface itself", "method", "level"))

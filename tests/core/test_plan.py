@@ -9,14 +9,28 @@ import numpy as np
 import pytest
 
 import jaart
-from jaart.core import filters, lights, meshes, picture, prepare, shade, surfels
-from jaart.core.assemble import evaluator, rule_of, searcher
+from jaart.core import cloud_surfels, filters, lights, mesh_tracer, meshes, picture, prepare, shade, surfels
+from jaart.core.assemble import evaluator, plan_of, rule_of, searcher
 from jaart.core.balls import CloudTracer
 from jaart.core.camera import Camera
 from jaart.core.chosen import arrival
 from jaart.core.errors import SettingsError
+from jaart.core.field import Energy
 from jaart.core.io import load
-from jaart.core.kernels import centres, fitted, march, minimise, normals, probe, project, safe, stepping, tangent
+from jaart.core.kernels import (
+    centres,
+    field,
+    fitted,
+    march,
+    minimise,
+    normals,
+    probe,
+    project,
+    safe,
+    stepping,
+    table,
+    tangent,
+)
 from jaart.core.kernels import records as r
 from jaart.core.kernels.near import surfels_near as compiled_near
 from jaart.core.kernels.records import FIT_SIZE, Near, Sites, Start
@@ -26,6 +40,7 @@ from jaart.core.render import render
 from jaart.core.scene import Model, Scene, frozen
 from jaart.core.settings import PARAMETERS, Settings, preset
 from jaart.core.shapes import Sphere
+from jaart.core.warm import warm_up
 from tests.core.cloud_scenes import fresh
 from tests.core.kernel_calls import near_of, work_for
 
@@ -109,6 +124,44 @@ def test_the_energy_field(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     planned = plan(scene, settings)
     render(scene, settings, size=(4, 4))
     assert len(calls) == planned["energy field"].runs
+
+
+@pytest.mark.parametrize(("made", "name"), CASES)
+def test_trees_and_the_distance_field(made: str, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, settings, calls = MADE[made](), Settings(**SETTINGS[name]), list[str]()
+    for module, call in ((cloud_surfels, "ball_tree"), (mesh_tracer, "box_tree"), (table, "fill_empty")):
+        counted(monkeypatch, calls, module, call)
+    planned = plan(scene, settings)
+    warm_up(scene, settings)
+    calls.clear()
+    render(scene, settings, size=(4, 4))
+    assert planned["tree"].runs == ("ball_tree" in calls or "box_tree" in calls)
+    assert planned["distance field"].runs == ("fill_empty" in calls) == planned["cell table"].runs
+    assert planned["traversal"].runs != planned["tree"].runs
+    assert planned["first guess"].runs == planned["centre fits"].runs
+
+
+@pytest.mark.parametrize("name", PARAMETERS["energy"].choices)
+@pytest.mark.parametrize("emphasise", [False, True])
+def test_an_energys_level_takes_a_normal_where_it_is_planned(name: str, emphasise: bool,
+                                                             monkeypatch: pytest.MonkeyPatch) -> None:
+    if emphasise and name == "angle":
+        return  # refused
+    scene, calls, asked = lattice(), list[str](), list[int]()
+    settings = Settings(method="isosurface", energy=name, emphasise=emphasise, normal="covariance")
+    values, near = check(scene, settings), near_of(PLANE)
+    made = Energy(prepare.cells(scene, settings, values), plan_of(scene, settings, values), name, emphasise).asked
+    python(monkeypatch, calls, tangent, normals)
+
+    def evaluate(_: int, *args: Any) -> Any:
+        asked.append(args[3])
+        return tangent.tangent_covariance(*args)
+
+    monkeypatch.setattr(field, "evaluate_at", evaluate)
+    field.energy_at.py_func(near, (0.1, 0.0, 0.05), made, (0.0, 0.0, 1.0), work_for(near), np.zeros(FIT_SIZE))
+    planned = plan(scene, settings)
+    assert len(asked) == 1 and planned["covariance and eigenvector"].runs == ("covariance_sums" in calls)
+    assert planned["Mahalanobis sum"].runs == (name == "mahalanobis")
 
 
 @pytest.mark.parametrize("given", [
