@@ -92,7 +92,7 @@ def _picture_stages(scene: Scene, settings: Settings) -> tuple[Stage, ...]:
         stage("shadow rays", shadows_wanted(settings), "from each hit to each light", "none are asked for",
               "shadows", "light", "shading"),
         stage("reflection and refraction", settings.shading == "water", f"up to {settings.depth} times a ray",
-              "shading is no water", "shading", "depth", "ior"),
+              "shading is no water: no stack of media either", "shading", "depth", "ior"),
         stage("more samples", settings.samples > 1, f"{settings.samples}×{settings.samples} rays a pixel",
               "one ray a pixel", "samples"),
         stage("exact surface", quality.known(scene), "known: errors are measured where they are asked for",

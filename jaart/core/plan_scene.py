@@ -16,9 +16,8 @@ _NO_LEVELS = "a cloud has no fill levels"
 def scene_stages(scene: Scene, settings: Settings, values: Chosen) -> tuple[Stage, ...]:
     """What is made before the first ray, in its order."""
     surfels = _cloud(scene, settings, values) if scene.kind == "cloud" else _lattice(scene, settings)
-    table = _table(scene, settings, values)
-    return (*surfels, table, _distances(scene, table), _balls(scene, settings, values), *_mesh(settings, values),
-            _tree(scene, values))
+    return (*surfels, _table(scene, settings, values), _unasked(scene, values), _distance_field(scene, values),
+            _balls(scene, settings, values), _tree(scene, values), *_mesh(settings, values))
 
 
 def _lattice(scene: Scene, settings: Settings) -> tuple[Stage, ...]:
@@ -51,21 +50,7 @@ def _table(scene: Scene, settings: Settings, values: Chosen) -> Stage:
         return Stage("cell table", False, _PICKED, ("method",))
     if values.method == "cylinder":
         return Stage("cell table", True, "of all surfels that a cylinder in a cell may hold", ("method", "h"))
-    return Stage("cell table", True, f"{_near(settings, values)} of each cell near one",
-                 ("neighbourhood", "radius", "k"))
-
-
-def _distances(scene: Scene, table: Stage) -> Stage:
-    """The distance of each cell from one with a surfel."""
-    why_not = "a cloud has no cells" if scene.kind == "cloud" else "made with the table"
-    return stage("distance field", table.runs, "rays skip so many empty cells", why_not)
-
-
-def _tree(scene: Scene, values: Chosen) -> Stage:
-    """What rays walk down where they do not cross cells."""
-    over = "the triangles" if values.method in MESHES else "the balls"
-    return stage("tree", scene.kind == "cloud" or values.method in MESHES, f"over {over}",
-                 "rays go from cell to cell; a lattice needs none", "method")
+    return Stage("cell table", True, f"{_near(settings, values)} of each cell", ("neighbourhood", "radius", "k"))
 
 
 def _balls(scene: Scene, settings: Settings, values: Chosen) -> Stage:
@@ -76,6 +61,29 @@ def _balls(scene: Scene, settings: Settings, values: Chosen) -> Stage:
         return Stage("balls", True, "one of radius h around each point, that of its disc", ("method", "h"))
     return Stage("balls", True, f"those that cover the points; {_near(settings, values)} of each are "
                  "gathered when a ray first asks", ("ball_k", "neighbourhood", "radius", "k"))
+
+
+def _unasked(scene: Scene, values: Chosen) -> Stage:
+    """The neighbourhoods of places that no ray visits."""
+    if scene.kind == "cloud":
+        return Stage("neighbours not asked for", False, "a ball has none until a ray asks")
+    return stage("neighbours not asked for", evaluates(values), "the table is of all cells at once", _PICKED, "method")
+
+
+def _distance_field(scene: Scene, values: Chosen) -> Stage:
+    """How far each cell is from the nearest surfel."""
+    if scene.kind == "cloud":
+        return Stage("distance field", False, "a cloud has no cells")
+    return stage("distance field", evaluates(values), "how many empty cells are around each, to be skipped at once",
+                 _PICKED, "method")
+
+
+def _tree(scene: Scene, values: Chosen) -> Stage:
+    """What finds balls along a ray, or the nearest surfels of a cell."""
+    if scene.kind == "cloud":
+        return Stage("tree", True, "of the balls, for rays; of the points, where nearest ones are asked for")
+    return stage("tree", meaning.weighs(values) and counts_nearest(values.neighbourhood),
+                 "of the surfels, for those nearest to each cell", "a lattice needs none", "method", "neighbourhood")
 
 
 def _near(settings: Settings, values: Chosen) -> str:
@@ -89,5 +97,5 @@ def _mesh(settings: Settings, values: Chosen) -> tuple[Stage, ...]:
     return (
         stage("energy field", sampled, f"the energy is sampled {settings.subdivide} times along each cell's edge",
               "no energy's isosurface is asked for", "method", "energy", "subdivide"),
-        stage("mesh", values.method in MESHES, f"marching cubes at level {values.level:g}",
+        stage("mesh", values.method in MESHES, f"marching cubes at level {values.level:g}, in a tree",
               "rays search the surface itself", "method", "level"))

@@ -19,9 +19,9 @@ from jaart.core.settings import PARAMETERS, Settings
 
 #: A step that ends a search is at most this share of what can be seen; the hit is nearer yet, by the steps' shrinking.
 SHARE = 0.1
-#: About the distance of planes and of fitted polynomials from the true surface, in h² over the scene's longest edge:
-#: on lattices a third of the medians of benchmarks/auto.py, in clouds more. h²/2R is what a sphere shrinks by.
-ERROR, FITTED_ERROR = 1.0, 0.1
+#: Median distance of planes and of fitted polynomials from the true surface, in h² over the scene's longest edge: from
+#: below, see benchmarks/auto.py. h²/2R is what a sphere shrinks by.
+ERROR, FITTED_ERROR = 1.0, 1e-3
 #: The coarsest tolerance, in h: the sources' own.
 COARSEST = 0.125
 #: The finest of a lattice, in h: f jumps by up to 0.008 h where cells' lists of surfels end at 3.125 h; of a cloud.

@@ -57,12 +57,13 @@ def read(source: str | PathLike[str], frame: int | None, settings: Settings, bas
          before: Scene | None) -> Opened:
     """A scene and settings for it. Raises FileError for a file that cannot be read."""
     from jaart.core import prepare
+    from jaart.core.groups.surface import evaluates
     from jaart.core.io import load
     from jaart.gui.suit import suited
 
     scene = load(source, frame)
     settings, changed = suited(scene, settings, base, before)
-    if scene.kind != "cloud":
+    if scene.kind != "cloud" and evaluates(settings):
         prepare.surfels(scene, settings)
     return Opened(scene, bounds(scene, settings), settings, changed)
 
