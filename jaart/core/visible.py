@@ -21,7 +21,7 @@ from jaart.core.settings import PARAMETERS, Settings
 SHARE = 0.1
 #: Median distance of planes and of fitted polynomials from the true surface, in h² over the scene's longest edge: from
 #: below, see benchmarks/auto.py. h²/2R is what a sphere shrinks by.
-ERROR, FITTED_ERROR = 1.0, 0.1
+ERROR, FITTED_ERROR = 1.0, 1e-3
 #: The coarsest tolerance, in h: the sources' own.
 COARSEST = 0.125
 #: The finest of a lattice, in h: f jumps by up to 0.008 h where cells' lists of surfels end at 3.125 h; of a cloud.

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import jaart
-from jaart.gui.plan import PlanLine, line
 from patience import PATIENCE, settle
 from qtpy.QtCore import Qt
+
+import jaart
+from jaart.gui.plan import PlanLine, line
 
 
 def rested(qtbot, window, ready=lambda plan: True):
