@@ -1,8 +1,8 @@
 """What `tolerance = auto` saves, and that nothing of it can be seen: against the same picture traced to 1e-9.
 
-On a lattice f jumps where lists of surfels end, so that some rays have no hit at 1e-9 at all, or another one: a hit more
-is what auto keeps. `off` is how far the surface is from the true one, median of the hits: the model's error, which visible.ERROR and
-FITTED_ERROR give from below.
+On a lattice f jumps where lists of surfels end, so that some rays have no hit at 1e-9 at all, or another one: a hit
+more is what auto keeps. `off` is how far the surface is from the true one, median of the hits: the model's error, which
+visible.ERROR and FITTED_ERROR give from below.
 """
 
 from __future__ import annotations

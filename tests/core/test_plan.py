@@ -114,7 +114,8 @@ def test_the_energy_field(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize(("made", "given"), [
     *(("lattice", given) for given in ({}, {"neighbourhood": "knn"}, {"neighbourhood": "cell_knn"},
-                                       {"method": "cylinder"}, {"method": "fill_level"}, {"method": "isosurface", "subdivide": 1})),
+                                       {"method": "cylinder"}, {"method": "fill_level"},
+                                       {"method": "isosurface", "subdivide": 1})),
     ("cloud", {}), ("cloud", {"neighbourhood": "knn"}), ("cloud", {"method": "cylinder"})])
 def test_trees_and_the_distance_field(made: str, given: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[str] = []
