@@ -113,7 +113,7 @@ def hits_line(hits: Hits, scene: Scene, quality: Quality | None = None) -> str:
     lines = [f"{shape}{int(hits.hit.sum())} of {len(hits)} rays hit, {evaluations:.2f} evaluations a ray, "
              f"prepared in {1000 * hits.prep_s:.0f} ms, traced in {1000 * hits.ray_s:.0f} ms",
              ", ".join(f"{count} {name}" for name, count in hits.counts().items()) or "no rays"]
-    lines += _taken(hits) + _fine_enough(hits, scene)
+    lines += _taken(hits) + _chosen(hits, scene)
     if quality is not None and not quality.relevant:
         lines.append("against the exact surface: no relevant rays, all show background and should")
     elif quality is not None:
@@ -138,17 +138,22 @@ def _taken(hits: Hits) -> list[str]:
     return [f"{', '.join(each)} a ray; {', '.join(parts)}"]
 
 
-def _fine_enough(hits: Hits, scene: Scene) -> list[str]:
-    """What a tolerance of `auto` came to, and why."""
-    from jaart.core.chosen import chosen, tolerance_unit
+def _chosen(hits: Hits, scene: Scene) -> list[str]:
+    """What a radius and a tolerance of `auto` came to, and why."""
+    from jaart.core.chosen import chosen, explained, tolerance_unit
     from jaart.core.settings import PARAMETERS
-    from jaart.core.visible import for_picture
+    from jaart.core.visible import for_picture, of_hits
 
-    if hits.settings.tolerance != "auto" or not PARAMETERS["tolerance"].matters(hits.settings):
-        return []
-    number, why = for_picture(scene, hits.settings, hits.camera, hits.size)
-    values = chosen(scene, hits.settings)
-    return [f"tolerance {number:g} {tolerance_unit(values)}, {why}; radius {values.radius:.4g}"]
+    auto = [name for name in ("radius", "tolerance")
+            if getattr(hits.settings, name) == "auto" and PARAMETERS[name].matters(hits.settings)]
+    parts = []
+    if "radius" in auto:
+        radius, why = explained(scene, of_hits(scene, hits))["radius"]
+        parts.append(f"radius {radius:.4g}{'' if scene.kind == 'cloud' else ' cells'}, {why}")
+    if "tolerance" in auto:
+        number, why = for_picture(scene, hits.settings, hits.camera, hits.size)
+        parts.append(f"tolerance {number:g} {tolerance_unit(chosen(scene, hits.settings))}, {why}")
+    return ["auto: " + "; ".join(parts)] if parts else []
 
 
 def say_notes(scene: Scene, settings: Settings, hits: Hits | None = None) -> None:
