@@ -15,6 +15,7 @@ from jaart.core.kernels import table
 from jaart.core.kernels.records import Cell, Cells, Sites
 from jaart.core.scene import Array
 from jaart.core.surfels import Surfels
+from jaart.core.telling import tell
 
 #: The table is made for so many surfels at a time.
 SURFELS_AT_ONCE = 1024
@@ -70,6 +71,7 @@ def _scan(found: Surfels, radius: float, shape: Cell, first: NDArray[np.int64], 
             raise Cancelled("the neighbour table was cancelled")
         table.scan_near(index, offset, normal, begin, min(begin + SURFELS_AT_ONCE, len(found)), radius, shape,
                         first, counted, ids, columns)
+        tell(begin + (len(found) if len(ids) else 0), 2 * len(found))
 
 
 def _nearest(found: Surfels, empty: NDArray[np.uint8], k: int, exact: bool) -> Sites:

@@ -53,7 +53,8 @@ def with_reach(values: Chosen) -> Chosen:
 
 def cylinder_tracer(values: Chosen, plan: Plan, cells: Callable[[Chosen], Cells]) -> CylinderTracer:
     """What rays are sent through; cells: makes the table of a neighbourhood."""
-    return CylinderTracer(cells(with_reach(values)), plan, values.h)
+    made = cells(with_reach(values))
+    return CylinderTracer(lambda: made, plan, values.h)
 
 
 @functools.cache
@@ -68,4 +69,4 @@ def warm_up() -> None:
 
 _SMALL = Chosen(method="cylinder", search="iterate", weight="gaussian", normal="surfel", neighbourhood="cell_ball",
                 h=1.0, radius=reach(1.0), trust=1.0, off_centre=math.inf, nearest=math.inf, level=0.0, step=1.0,
-                stride=1.0)
+                stride=1.0, tolerance=1.0)

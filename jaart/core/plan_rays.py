@@ -18,6 +18,8 @@ from jaart.core.stage import Stage, stage
 
 #: Searches that go by the slope of f.
 SLOPED = ("newton", "safe")
+#: Energies that no normal of the average enters, unless they are emphasised by the angle.
+BLIND = ("off_centre", "mahalanobis")
 #: Each bound of a hit: its stage and setting, whether it asks for anything, and what it takes to know.
 BOUNDS: tuple[tuple[str, str, Callable[[Bounds], bool], str], ...] = (
     ("off-centre bound", "max_off_centre", lambda b: b.off_centre < math.inf, "the off-centre value is known anyway"),
@@ -31,31 +33,57 @@ BOUNDS: tuple[tuple[str, str, Callable[[Bounds], bool], str], ...] = (
 def ray_stages(scene: Scene, settings: Settings, values: Chosen) -> tuple[Stage, ...]:
     """What rays take, in the order of the computation."""
     rule = rule_of(scene, settings, values)
-    return (*_sums(settings, values, rule), *_fits(values, rule), *_search(scene, settings, values),
-            *_bounds(settings, values))
+    return (_traversal(scene, settings, values), *_sums(settings, values, rule), *_fits(values, rule),
+            *_search(scene, settings, values), *_bounds(settings, values))
+
+
+def _traversal(scene: Scene, settings: Settings, values: Chosen) -> Stage:
+    """How a ray comes from place to place."""
+    if values.method in MESHES:
+        return Stage("traversal", False, "the tree of the triangles takes its place", ("method",))
+    if scene.kind == "cloud":
+        return Stage("traversal", True, "the balls that the ray pierces, the nearest first")
+    even = settings.traversal == "uniform" and values.method != "cylinder"
+    return Stage("traversal", True, f"every {values.stride:g} cells, and what is empty at once" if even else
+                 "each cell that the ray crosses, and what is empty at once", ("traversal", "step") if even else
+                 ("traversal",))
 
 
 def summed(settings: Settings, values: Chosen, rule: Rule) -> dict[str, bool]:
     """Which sums over the surfels an evaluation takes: weights, normals, covariance and gradient."""
     weighs = meaning.weighs(values)
+    normal = weighs and not (_blind(settings, values) and values.method in MESHES)
     return {"weights": weighs,
-            "normals": weighs and (rule.normal == r.SURFEL or rule.oriented == 1),
-            "covariance": weighs and rule.normal != r.SURFEL,
+            "normals": normal and (rule.normal == r.SURFEL or rule.oriented == 1),
+            "covariance": normal and rule.normal != r.SURFEL,
             "gradient": searches(values) and (values.search in SLOPED or meaning.shows_gradient(settings))}
+
+
+def _blind(settings: Settings, values: Chosen) -> bool:
+    """Whether an energy is asked for that no normal enters, so that hits alone need one."""
+    energy = settings.energy if values.method == "isosurface" else values.method
+    asked = values.method == "isosurface" or (searches(values) and values.search == "minimise")
+    return asked and energy in BLIND and not settings.emphasise
 
 
 def _sums(settings: Settings, values: Chosen, rule: Rule) -> tuple[Stage, ...]:
     taken, nothing = summed(settings, values, rule), _unweighed(values)
-    normal = ("method", "normal")
+    mahalanobis = "mahalanobis" in (values.method, settings.energy if values.method == "isosurface" else "")
+    blind, normal = _blind(settings, values), ("method", "normal", "emphasise")
+    unseen = nothing or ("the energy's level needs no normal" if blind and values.method in MESHES else "")
+    where = ", where an energy is least" if blind else ""
     closed = "by differences" if values.method in FITTED else "in closed form"
     return (
         stage("weights and barycentre", taken["weights"], f"{values.weight}, h = {values.h:.4g}", nothing,
               "method", "weight", "h"),
         stage("sum of normals", taken["normals"],
-              "n(x) is the surfels' average" if rule.normal == r.SURFEL else "the eigenvector is turned to their side",
-              nothing or "n(x) comes from the points alone", *normal),
-        stage("covariance and eigenvector", taken["covariance"], "n(x) is the direction of least spread",
-              nothing or "n(x) is the average of the surfels' normals", *normal),
+              f"n(x) is the surfels' average{where}" if rule.normal == r.SURFEL
+              else f"the eigenvector is turned to their side{where}",
+              unseen or "n(x) comes from the points alone", *normal),
+        stage("covariance and eigenvector", taken["covariance"], f"n(x) is the direction of least spread{where}",
+              unseen or "n(x) is the average of the surfels' normals", *normal),
+        stage("Mahalanobis sum", mahalanobis, "the mean distance to the surfels' planes is minimised",
+              "no energy asks for it", "method", "energy", "mahalanobis_c"),
         stage("gradient of f", taken["gradient"], f"{_who(settings, values)} it, {closed}",
               "neither search nor shown normal takes it" if searches(values) else "no ray is searched",
               "method", "search", "shading_normal"))
@@ -91,10 +119,15 @@ def _fits(values: Chosen, rule: Rule) -> tuple[Stage, ...]:
 def _search(scene: Scene, settings: Settings, values: Chosen) -> tuple[Stage, ...]:
     kept = meaning.fits_centres(scene, values) and searches(values)
     why_not = "a lattice keeps none" if scene.kind != "cloud" else "balls are searched from side to side"
+    guessed = "where the ray meets what is kept at a ball's centre"
+    unguessed = "a search begins where the ray enters a cell" if searches(values) else "no ray is searched"
+    if meaning.stretches(values) and searches(values):
+        unguessed = "a place is searched from side to side"
     where = "from side to side of each place" if meaning.stretches(values) else "from a start in each place"
     return (
-        stage("centre fits", kept, "kept for each ball that a ray asks for, as the first guess", why_not,
+        stage("centre fits", kept, "kept for each ball that a ray asks for", why_not,
               "method", "search"),
+        stage("first guess", kept, guessed, unguessed, "method", "search"),
         stage("search", searches(values), f"{values.search}, {where}",
               "triangles are hit at once" if values.method in MESHES else "discs are hit at once", "method", "search"),
         stage("proof of misses", settings.proof, "bounds of the weights", "none is asked for", "search", "proof"))

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core import extents, memory, prepare
+from jaart.core import extents, memory, prepare, visible
 from jaart.core.camera import Camera, check_size
+from jaart.core.counters import Made, made_by, since
 from jaart.core.errors import Cancelled, RayError
 from jaart.core.kernels.pinhole import View, write_rays
 from jaart.core.kernels.records import Out
@@ -27,7 +28,7 @@ from jaart.core.tracers import NO_BEGINS, NO_BLOCKS
 from jaart.core.warm import warm_up
 
 #: What one ray and its hit take.
-_BYTES_A_RAY = 6 * 8 + 9 * 8 + 4 * 4 + 1
+_BYTES_A_RAY = 6 * 8 + 9 * 8 + 7 * 4 + 1
 #: A picture that is done sooner than this [s] shows nothing between its first coarse one and itself.
 PATIENCE = 0.15
 
@@ -51,11 +52,11 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
     settings = settings or preset("best")
     job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays, any_hit)
     warm_up(scene, settings)
-    ready = prepare.prepared(scene, settings, cancel)
+    ready = prepare.prepared(scene, visible.seen(scene, settings, job.camera, size), cancel)
     count, begin = threads or os.cpu_count() or 1, time.perf_counter()
     with ThreadPoolExecutor(count) as pool:
         watch = _Watch(progress, cancel, job.count)
-        run = _Run(pool, count, ready, job.beginning(ready), settings, watch, begin)
+        run = _Run(pool, count, ready, job.beginning(ready), settings, watch, begin, made_by(ready.tracer))
         if picture and job.size:
             return _refined(run, job.size, picture)
         out = columns_for(job.count)
@@ -148,7 +149,10 @@ def unit(directions: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _Run:
-    """A picture, or a list of rays, under way in a pool of so many threads; begin: when it began."""
+    """A picture, or a list of rays, under way in a pool of so many threads.
+
+    begin: when it began; before: what earlier rays of the same tracer had made ready.
+    """
 
     pool: ThreadPoolExecutor
     threads: int
@@ -157,6 +161,7 @@ class _Run:
     settings: Settings
     watch: _Watch
     begin: float
+    before: Made
 
     @property
     def seconds(self) -> float:
@@ -185,8 +190,9 @@ class _Run:
             columns = {name: column.take(rows, axis=0) for name, column in columns.items()}
         for column in columns.values():
             column.flags.writeable = False
+        made = since(self.before, self.ready.tracer)
         return Hits(**columns, settings=self.settings, camera=job.camera, size=size, prep_s=self.ready.seconds,
-                    ray_s=self.seconds)
+                    ray_s=self.seconds, gathered=made.gathered, fits=made.fits)
 
 
 def _refined(run: _Run, size: Size, picture: Callable[[Hits], None]) -> Hits:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.call import search_from
+from jaart.core.kernels.counts import forget_counts, write_counts
 from jaart.core.kernels.guess import STATE, is_near, meets, show_centre
 from jaart.core.kernels.heap import pop, push
 from jaart.core.kernels.jit import STRICT, kernel
@@ -249,5 +250,7 @@ def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array,
         missing[i] = end.missing
         if end.missing == NOTHING:
             write_end(out, to, end)
+            write_counts(out, to, fitted)
             written = end.rows
+        forget_counts(fitted)
     return written
