@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -53,6 +54,7 @@ PRESETS: dict[str, Mapping[str, Any]] = {
 }
 
 
+@functools.cache
 def preset(name: str) -> Settings:
     """The settings of a preset. Raises SettingsError for a name that does not exist."""
     if name not in PRESETS:

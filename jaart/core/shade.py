@@ -43,8 +43,7 @@ def shade(hits: Hits, map: str = "shaded", quality: Quality | None = None, theme
     if theme not in BACKGROUND:
         raise SettingsError(f"no theme is called {theme!r}; there are {', '.join(BACKGROUND)}")
     settings = settings or hits.settings
-    colours = np.empty((len(hits), 3), np.uint8)
-    colours[:] = BACKGROUND[theme]
+    colours = np.frombuffer(bytearray(bytes(BACKGROUND[theme]) * len(hits)), np.uint8).reshape(-1, 3)
     if map == "shaded":
         _shaded(colours, hits, settings, scene, _tracer(hits, settings, scene, threads, cancel))
     elif map == "status":
@@ -76,8 +75,9 @@ def _shaded(colours: Bytes, hits: Hits, settings: Settings, scene: Scene | None,
         colours[:] = _bytes(water(hits, settings, Environment.of(scene, hits.settings), rays).colour)
         return
     at = np.flatnonzero(hits.hit)
-    normal, view = hits.normal[at], -hits.direction[at]
-    seen = lights(settings, hits.point[at], normal, view, tracer=rays)
+    point, normal, view = (column.take(at, axis=0) for column in (hits.point, hits.normal, hits.direction))
+    view = -view
+    seen = lights(settings, point, normal, view, tracer=rays)
     if settings.shading == "diffuse":
         colours[at] = np.rint(255 * blue(seen, normal)).astype(np.uint8)
     else:

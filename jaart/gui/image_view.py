@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
 from qtpy.QtCore import QPointF, QRectF, QSize, Qt, QTimer
 from qtpy.QtGui import QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
 from qtpy.QtWidgets import QApplication, QWidget
@@ -9,6 +12,8 @@ from qtpy.QtWidgets import QApplication, QWidget
 from jaart.core.camera import Camera
 from jaart.core.picture import plain
 from jaart.core.quality import known
+from jaart.core.records import Hits
+from jaart.core.settings import PARAMETERS, Settings
 from jaart.core.shade import shade
 from jaart.gui import navigation, overlay, theme
 from jaart.gui.model import SceneModel
@@ -32,6 +37,7 @@ class ImageView(QWidget):
         self.setMinimumSize(240, 200)
         self.setFont(theme.tabular(self.font()))
         self.model, self.image = model, QImage()
+        self._coloured: tuple[Any, ...] = ()
         self.hovered: tuple[int, int] | None = None
         self._pressed: QPointF | None = None
         self._last = QPointF()
@@ -48,17 +54,25 @@ class ImageView(QWidget):
         return QSize(820, 640)
 
     def refresh(self) -> None:
-        """Colour the hits again."""
+        """Colour the hits again, if anything that their colours depend on has changed."""
         model, hits = self.model, self.model.hits
         if hits is None:
-            self.image = QImage()
+            self.image, self._coloured = QImage(), ()
         elif model.quality is not None or not model.map.endswith("_error") or not self._was_exact():
-            pixels = model.shader.colours
-            if pixels is None:
-                pixels = shade(hits, model.map, model.quality, model.theme, plain(model.settings))
-            height, width = pixels.shape[:2]
-            self.image = QImage(pixels.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
+            self._colour(hits)
         self.update()
+
+    def _colour(self, hits: Hits) -> None:
+        model, settings = self.model, plain(self.model.settings)
+        errors = model.quality if model.map.endswith("_error") else None
+        finished = model.shader.colours
+        depends = (hits.t, errors, finished, model.map, model.theme, *shading(settings))
+        if len(depends) == len(self._coloured) and all(map(same, depends, self._coloured)):
+            return
+        self._coloured = depends
+        pixels = shade(hits, model.map, errors, model.theme, settings) if finished is None else finished
+        height, width = pixels.shape[:2]
+        self.image = QImage(pixels.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
 
     def _was_exact(self) -> bool:
         """Whether errors are on show that the next full picture will bring anew."""
@@ -206,3 +220,13 @@ class ImageView(QWidget):
             self.model.clear_pick()
         else:
             super().keyPressEvent(event)
+
+
+def shading(settings: Settings) -> tuple[Any, ...]:
+    """The values that enter the colours of hits."""
+    return tuple(getattr(settings, about.name) for about in PARAMETERS.values() if about.stage == "shade")
+
+
+def same(one: Any, other: Any) -> bool:
+    """Whether two values are the same: arrays and records themselves, anything else by value."""
+    return one is other or (not isinstance(one, np.ndarray) and bool(one == other))

@@ -35,8 +35,9 @@ class WordRow(Row):
 
     def set_meant(self, value: Any) -> None:
         """The value that the word stands for at present, shown, and taken when a value is asked for; None: unknown."""
-        self.meant = None if value is None else self.about.check(value)
-        if isinstance(self.value, str):
+        value = None if value is None else self.about.check(value)
+        changed, self.meant = value != self.meant, value
+        if changed and isinstance(self.value, str):
             self.display(self.value)
 
     def number(self) -> Any:
@@ -83,8 +84,10 @@ class NumberRow(WordRow):
     def set_scene(self, spacing: float, diagonal: float) -> None:
         """How long the scene's spacing and diagonal are: a step of the slider is a share of the spacing in any unit."""
         if self.about.kind == "length" and spacing > 0 and diagonal > 0:
-            self.scales = {"": spacing, "s": 1.0, "d": spacing / diagonal}
-            self.display(self.value)
+            scales = {"": spacing, "s": 1.0, "d": spacing / diagonal}
+            changed, self.scales = scales != self.scales, scales
+            if changed:
+                self.display(self.value)
 
     def display(self, value: Any) -> None:
         """Bring the controls to a value."""

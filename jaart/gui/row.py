@@ -39,18 +39,23 @@ class Row(QWidget):
         keep = self.reset.sizePolicy()
         keep.setRetainSizeWhenHidden(True)
         self.reset.setSizePolicy(keep)
+        self.kind = ""
         self.set_kind("lattice")
 
     def set_kind(self, kind: str) -> None:
         """Say the unit that the parameter has in a kind of scene."""
+        if kind == self.kind:
+            return
+        self.kind = kind
         unit = unit_in(self.about, kind)
         self.label.setText(f"{self.about.label} [{unit}]" if unit else self.about.label)
         self.setToolTip(tip(self.about, unit))
 
     def set_base(self, value: Any) -> None:
         """Set the value that the button goes back to: the chosen preset's."""
-        self.base = value
-        self.reset.setToolTip(f"Back to {text_of(value)}")
+        if value != self.base:
+            self.base = value
+            self.reset.setToolTip(f"Back to {text_of(value)}")
         self.reset.setVisible(self.value != value)
 
     def enter(self, value: Any) -> None:

@@ -77,9 +77,9 @@ def bounds(scene: Scene, settings: Settings) -> Bounds:
 
 def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int],
             dragging: bool) -> Made:
-    """A picture; coarse ones are shown while it is made."""
+    """A picture; coarse ones are shown while it is made, and the full one while its errors are measured."""
     from jaart.core.meaning import check
-    from jaart.core.quality import quality
+    from jaart.core.quality import known, quality
     from jaart.core.render import render
     from jaart.core.warm import needs_compile
 
@@ -88,7 +88,10 @@ def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tu
     values = check(scene, settings)
     hits = render(scene, settings, camera, size, progress=None if dragging else job.progress, cancel=job.cancel,
                   picture=None if dragging else job.partial)
-    return Made(hits, None if dragging else quality(hits, scene), _known(scene, settings, values))
+    if dragging or not known(scene):
+        return Made(hits, None, _known(scene, settings, values))
+    job.partial(hits)
+    return Made(hits, quality(hits, scene), _known(scene, settings, values))
 
 
 def _known(scene: Scene, settings: Settings, values: Chosen) -> Known:

@@ -20,13 +20,14 @@ def counted(signal):
     return calls
 
 
-def test_a_scene_gives_coarse_pictures_then_the_full_one_and_its_quality(qtbot, model):
+def test_a_scene_gives_coarse_pictures_then_the_full_one_and_its_quality(qtbot, model, monkeypatch):
+    monkeypatch.setattr("jaart.core.render.PATIENCE", 0.0)
     model.set_size(64, 64)
     sizes = []
     model.hits_changed.connect(lambda: sizes.append(model.hits.size if model.hits else None))
     model.open("standard")
     settle(qtbot, model)
-    assert sizes == [None, (8, 8), (16, 16), (32, 32), (64, 64)]
+    assert sizes == [None, (8, 8), (16, 16), (32, 32), (64, 64), (64, 64)]  # the last with its quality
     assert model.complete
     assert 0 < model.quality.delta < 1
     assert len(model.quality.distance) == 64 * 64
