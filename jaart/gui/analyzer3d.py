@@ -9,6 +9,7 @@ from qtpy.QtCore import QEvent, QObject, Qt
 from qtpy.QtGui import QCloseEvent, QKeyEvent
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QToolButton, QVBoxLayout, QWidget
 
+from jaart.core.records import Trace
 from jaart.gui.model import SceneModel
 from jaart.gui.panel import Panel, step_by_key
 from jaart.plot.glyphs import Mesh
@@ -47,9 +48,8 @@ class Analyzer3D(Panel):
         trace = self.model.trace
         if self._view is None or trace is None or not trace.steps:
             return
-        self._view.camera_position = view(trace, self.model.step, kind, self._up())
-        self._view.reset_camera_clipping_range()
-        self._view.render()
+        self._aim(trace, kind)
+        self._render()
 
     def close_view(self) -> None:
         """Give the view's window and memory back; the panel shows nothing afterwards."""
@@ -83,9 +83,20 @@ class Analyzer3D(Panel):
         self._stack.setCurrentWidget(self._view)
         if self._moved:
             self._moved = False
-            self.look("oblique")
+            self._aim(trace, "oblique")
+        self._render()
+
+    def _aim(self, trace: Trace, kind: str) -> None:
+        eye, target, up = view(trace, self.model.step, kind, self._up())
+        self._view.camera.SetPosition(*eye)  # VTK's own: pyvista measures the scene anew after each of them
+        self._view.camera.SetFocalPoint(*target)
+        self._view.camera.SetViewUp(*up)
+        self._view.camera_set = True
+
+    def _render(self) -> None:
+        """Have the view painted, which renders it; to render it here too would do it twice."""
         self._view.reset_camera_clipping_range()
-        self._view.render()
+        self._view.update()
 
     def _show(self, meshes: dict[str, Mesh]) -> None:
         self._view.set_background(THEMES[self.model.theme].face)

@@ -11,7 +11,7 @@ from qtpy.QtWidgets import QLabel, QStackedLayout, QToolTip, QVBoxLayout, QWidge
 from jaart.gui.model import SceneModel
 from jaart.gui.panel import Panel
 from jaart.gui.turns import turns
-from jaart.plot.style import THEMES, Spot, blank, place
+from jaart.plot.style import THEMES, Spot, emptied, place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -179,11 +179,10 @@ class FigurePanel(Panel):
         self.mark_dirty()
 
     def draw_anew(self, draw: Callable[[Axes], list[Spot]]) -> None:
-        """Draw into an empty axes of the theme; what was zoomed into stays in view."""
+        """Draw into the emptied axes of the theme; what was zoomed into stays in view."""
         figure = self.canvas.figure
         kept = (figure.axes[0].get_xlim(), figure.axes[0].get_ylim()) if self.canvas.zoomed and figure.axes else None
-        blank(figure, THEMES[self.model.theme])
-        axes = figure.add_subplot()
+        axes = emptied(figure, THEMES[self.model.theme])
         spots = draw(axes)
         if kept is not None:
             axes.set_xlim(kept[0], auto=None)

@@ -46,12 +46,13 @@ class StatisticsPanel(Panel):
 
     def draw(self) -> None:
         """Have the statistics of a full picture drawn; a coarse one leaves the last standing."""
-        current = self._current()
+        hits, errors = self.model.hits, self.model.quality
+        ready = hits is not None and self.model.complete
         for button in self.buttons:
-            button.setEnabled(current is not None)
-        if current is not None:
+            button.setEnabled(ready)
+        if hits is not None and ready:
             size, ratio, theme = (self.width(), self.height()), self.devicePixelRatioF(), self.model.theme
-            self.model.draw_later(lambda: statistics_pixels(current, theme, size, ratio), self._show)
+            self.model.draw_later(lambda: statistics_pixels(statistics(hits, errors), theme, size, ratio), self._show)
 
     def _show(self, pixels: NDArray[np.uint8]) -> None:
         height, width, _ = pixels.shape

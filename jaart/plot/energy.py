@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -48,21 +50,25 @@ def draw_energy(axes: Axes, trace: Trace, step: int = 0, theme: str = "light", w
     settings when None.
     """
     colours, unit = THEMES[theme], scale.unit(trace)
-    style.dress(axes, colours, f"t along the ray [{unit}]", f"energy [{unit}]")
     if not len(scale.stretches(trace)):
         style.say(axes, colours, "This ray passes the scene.")
         return []
+    style.edges(axes, colours, f"t along the ray [{unit}]", f"energy [{unit}]")
     axes.set_xlim(*_span(trace, step, whole))
     axes.set_ylim(*_range(trace, axes.get_xlim()))
     (_balls if scale.is_cloud(trace) else _cells)(axes, trace, colours)
-    axes.axhline(0, color=colours.muted, linewidth=0.8, zorder=1)
-    _curves(axes, trace, colours)
-    _level(axes, trace, level, colours)
+    _across(axes, 0, color=colours.muted, linewidth=0.8, zorder=1)
+    named = _curves(axes, trace, colours) + _level(axes, trace, level, colours)
     style.title(axes, colours, _title(trace, step), raised=True)
-    style.legend(axes, colours, loc="lower left", bbox_to_anchor=(0, 1), ncols=5)
+    style.key(axes, colours, named)
     if not (trace.steps or trace.hit or np.isfinite(trace.curves.tangent).any()):
         style.note(axes, colours, scale.no_steps(trace))
     return _steps(axes, trace, step, colours)
+
+
+def _across(axes: Axes, y: float, **look: Any) -> None:
+    """A line across the whole axes."""
+    style.line(axes, (0, 1), (y, y), transform=axes.get_yaxis_transform(), **look)
 
 
 def _title(trace: Trace, step: int) -> str:
@@ -131,35 +137,58 @@ def _in_scale(trace: Trace, name: str, values: Array | float) -> Array | float:
     return values * {"mahalanobis": 1 / scale.size(trace), "angle": scale.size(trace)}.get(name, 1.0)
 
 
-def _cells(axes: Axes, trace: Trace, colours: Theme) -> None:
-    from matplotlib import rc_context
+def _strips(axes: Axes, ways: Array, low: float, high: float, **look: Any) -> None:
+    """Rectangles from t to t (N, 2), between two shares of the height of the axes."""
+    from matplotlib.collections import PolyCollection
 
-    parts = np.stack([trace.borders[:-1], np.diff(trace.borders)], axis=1)
+    heights = np.broadcast_to((low, high, high, low), (len(ways), 4))
+    corners = np.stack([ways[:, (0, 0, 1, 1)], heights], axis=2)
+    axes.add_collection(PolyCollection(corners, transform=axes.get_xaxis_transform(), **look), autolim=False)
+
+
+def _cells(axes: Axes, trace: Trace, colours: Theme) -> None:
+    from matplotlib.collections import LineCollection
+
+    ways = scale.stretches(trace)
     left, right = axes.get_xlim()  # hatching is slow, so only what a zoom of twice the width may show
-    seen = (parts.sum(axis=1) > 1.5 * left - 0.5 * right) & (parts[:, 0] < 1.5 * right - 0.5 * left)
-    across = axes.get_xaxis_transform()
-    axes.broken_barh(parts[::2].tolist(), (0, 1), transform=across, facecolor=colours.band, zorder=0)
-    axes.vlines(trace.borders, 0, 1, transform=across, color=colours.grid, linewidth=0.7, zorder=0.5)
+    seen = (ways[:, 1] > 1.5 * left - 0.5 * right) & (ways[:, 0] < 1.5 * right - 0.5 * left)
+    _strips(axes, ways[::2], 0, 1, facecolor=colours.band, zorder=0)
+    borders = np.stack(np.broadcast_arrays(trace.borders[:, None], (0.0, 1.0)), axis=2)
+    axes.add_collection(LineCollection(list(borders), transform=axes.get_xaxis_transform(), color=colours.grid,
+                                       linewidth=0.7, zorder=0.5), autolim=False)
     for full in (False, True):
         for odd, hatch in enumerate(("/////", "\\\\\\\\\\")):
-            chosen = parts[seen & (np.arange(len(parts)) % 2 == odd) & (trace.with_surfel == full)]
+            chosen = ways[seen & (np.arange(len(ways)) % 2 == odd) & (trace.with_surfel == full)]
             edge = colours.full_cell if full else colours.cell
-            with rc_context({"hatch.linewidth": 1.7 if full else 0.4}):
-                axes.broken_barh(chosen.tolist(), (0, _STRIP), transform=across, zorder=2, hatch=hatch, edgecolor=edge,
-                                 facecolor=colours.face, linewidth=1.8 if full else 0.4)
+            if len(chosen):
+                with _hatching(1.7 if full else 0.4):
+                    _strips(axes, chosen, 0, _STRIP, zorder=2, hatch=hatch, edgecolor=edge, facecolor=colours.face,
+                            linewidth=1.8 if full else 0.4)
+
+
+@contextmanager
+def _hatching(width: float) -> Iterator[None]:
+    """What is made within has hatches of a width in points; matplotlib's rc_context copies all its settings instead."""
+    from matplotlib import rcParams
+
+    before, rcParams["hatch.linewidth"] = rcParams["hatch.linewidth"], width
+    try:
+        yield
+    finally:
+        rcParams["hatch.linewidth"] = before
 
 
 def _balls(axes: Axes, trace: Trace, colours: Theme) -> None:
     """The balls' stretches of the ray, in rows; the ground is tinted where any is."""
-    ways, across = scale.stretches(trace), axes.get_xaxis_transform()
-    parts = np.stack([ways[:, 0], ways[:, 1] - ways[:, 0]], axis=1)
-    axes.broken_barh(parts.tolist(), (0, 1), transform=across, facecolor=colours.band, zorder=0)
+    ways = scale.stretches(trace)
+    _strips(axes, ways, 0, 1, facecolor=colours.band, zorder=0)
     for row in range(_ROWS):
-        axes.broken_barh(parts[row::_ROWS].tolist(), (row * _STRIP / _ROWS, _STRIP / _ROWS), transform=across, zorder=2,
-                         facecolor=colours.cell, edgecolor=colours.full_cell, linewidth=0.8)
+        _strips(axes, ways[row::_ROWS], row * _STRIP / _ROWS, (row + 1) * _STRIP / _ROWS, zorder=2,
+                facecolor=colours.cell, edgecolor=colours.full_cell, linewidth=0.8)
 
 
-def _curves(axes: Axes, trace: Trace, colours: Theme) -> None:
+def _curves(axes: Axes, trace: Trace, colours: Theme) -> list[tuple[str, dict[str, Any]]]:
+    """Draw the energies; returns their names and looks."""
     t = trace.curves.t
     apart = np.diff(t) > 3 * np.median(np.diff(t)) if len(t) > 1 else np.zeros(0, bool)
     gaps = np.flatnonzero(apart) + 1  # between balls that do not touch, nothing is known
@@ -168,21 +197,23 @@ def _curves(axes: Axes, trace: Trace, colours: Theme) -> None:
         "off_centre": {"color": colours.barycentre, "linewidth": 1.2, "dashes": (4, 1.5), "zorder": 3},
         "mahalanobis": {"color": colours.surfel, "linewidth": 1.2, "dashes": (1, 1), "zorder": 3},
         "angle": {"color": colours.plane, "linewidth": 1.2, "dashes": (5, 1.5, 1, 1.5), "zorder": 3}}
-    for values, label, name in _drawn(trace):
-        axes.plot(np.insert(t, gaps, np.nan), np.insert(values, gaps, np.nan), label=label, **looks[name])
+    drawn = _drawn(trace)
+    for values, label, name in drawn:
+        style.line(axes, np.insert(t, gaps, np.nan), np.insert(values, gaps, np.nan), label=label, **looks[name])
+    return [(label, looks[name]) for _, label, name in drawn]
 
 
-def _level(axes: Axes, trace: Trace, level: float | None, colours: Theme) -> None:
-    """The line below which a minimum is a hit, where the search minimises."""
+def _level(axes: Axes, trace: Trace, level: float | None, colours: Theme) -> list[tuple[str, dict[str, Any]]]:
+    """The line below which a minimum is a hit, where the search minimises; returns its name and look."""
     if level is None and not isinstance(trace.settings.level, str):
         level = trace.settings.level
     if level is None or not searched.minimises(trace):
-        return
-    name = searched.energy_name(trace)
+        return []
+    name, look = searched.energy_name(trace), {"color": colours.hit, "linewidth": 1.0, "dashes": (6, 2), "zorder": 2.5}
     at = float(_in_scale(trace, name, level))
     for sign in (1, -1) if name == "tangent" and not trace.settings.emphasise else (1,):
-        axes.axhline(sign * at, color=colours.hit, linewidth=1.0, dashes=(6, 2), zorder=2.5,
-                     label="level" if sign == 1 else None)
+        _across(axes, sign * at, label="level" if sign == 1 else None, **look)
+    return [("level", look)]
 
 
 def _without_poles(values: Array, size: float) -> Array:
@@ -208,11 +239,12 @@ def _steps(axes: Axes, trace: Trace, step: int, colours: Theme) -> list[Spot]:
             _marks(axes, trace, chosen, shown, colours, alpha, smaller)
     spots = [spot for i in number for spot in _spots(trace, int(i), shown[i])]
     left, right = axes.get_xlim()
-    style.label(axes, [(s.x, s.y, s.text[:s.text.index(":")], colours.query if s.text[0] == "Q" else colours.next)
-                       for s in sorted(spots, key=lambda s: (s.step != step, -(s.step or 0)))
-                       if left <= s.x <= right and same[s.step]])
+    inks = {"Q": colours.query, "H": colours.next}
+    style.label(axes, colours, [(s.x, s.y, s.text[:s.text.index(":")], inks[s.text[0]])
+                                for s in sorted(spots, key=lambda s: (s.step != step, -(s.step or 0)))
+                                if left <= s.x <= right and same[s.step]])
     if trace.hit:
-        axes.plot(trace.t, 0, zorder=8, **style.marker("hit", colours))
+        style.line(axes, [trace.t], [0], zorder=8, **style.marker("hit", colours))
         spots.append(Spot(trace.t, 0.0, f"hit: t = {scale.text(trace, trace.t)}"))
     return spots
 
@@ -234,10 +266,10 @@ def _marks(axes: Axes, trace: Trace, chosen: NDArray[np.bool_], shown: Array, co
            smaller: float) -> None:
     size = smaller * style.MARK
     if not searched.looks(trace):
-        axes.plot(trace.t_next[chosen], np.zeros(chosen.sum()), zorder=6 + smaller, alpha=alpha,
-                  **style.marker("next", colours, size))
-    axes.plot(trace.t_query[chosen], np.nan_to_num(shown[chosen]), zorder=6 + smaller, alpha=alpha,
-              **style.marker("query", colours, size))
+        style.line(axes, trace.t_next[chosen], np.zeros(chosen.sum()), zorder=6 + smaller, alpha=alpha,
+                   **style.marker("next", colours, size))
+    style.line(axes, trace.t_query[chosen], np.nan_to_num(shown[chosen]), zorder=6 + smaller, alpha=alpha,
+               **style.marker("query", colours, size))
 
 
 def _spots(trace: Trace, i: int, shown: float) -> list[Spot]:

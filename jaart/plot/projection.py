@@ -47,12 +47,12 @@ def draw_projection(axes: Axes, trace: Trace, step: int = 0, theme: str = "light
     if not trace.steps:
         style.say(axes, colours, scale.no_steps(trace))
         return []
-    style.dress(axes, colours, f"t along the ray [{scale.unit(trace)}]", f"distance from the ray [{scale.unit(trace)}]")
+    style.edges(axes, colours, f"t along the ray [{scale.unit(trace)}]", f"distance from the ray [{scale.unit(trace)}]")
     flat = plane(trace, step, up)
     axes.set_aspect("equal", adjustable="datalim")
     _window(axes, trace, step)
     (_balls if scale.is_cloud(trace) else _cells)(axes, trace, step, flat, colours)
-    axes.axhline(0, color=colours.ray, linewidth=1.3, zorder=3)
+    style.line(axes, (0, 1), (0, 0), transform=axes.get_yaxis_transform(), color=colours.ray, linewidth=1.3, zorder=3)
     spots = _surfels(axes, trace, step, flat, colours)
     _plane(axes, trace, step, flat, colours)
     spots += _points(axes, trace, step, flat, colours)
@@ -78,13 +78,16 @@ def _window(axes: Axes, trace: Trace, step: int) -> None:
         middle, half = trace.t_query[step], _FAR * size
     axes.set_xlim(middle - half, middle + half)
     axes.set_ylim(-0.75 * half, 0.75 * half)
+    axes.dataLim.set_points(axes.viewLim.get_points())  # so that the equal aspect widens it and cuts nothing off
 
 
 def _cells(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> None:
     from matplotlib.collections import PolyCollection
 
+    left, right = axes.get_xlim()  # more than is seen at first: one may zoom and move
+    near = (trace.borders[1:] > 2 * left - right) & (trace.borders[:-1] < 2 * right - left)
     for full in (False, True):
-        shapes = [section(flat, cell) for cell in trace.cells[trace.with_surfel == full]]
+        shapes = [section(flat, cell) for cell in trace.cells[near & (trace.with_surfel == full)]]
         axes.add_collection(PolyCollection(
             [s for s in shapes if len(s)], facecolor=colours.band if full else "none", zorder=1.0 + 0.2 * full,
             edgecolor=colours.full_cell if full else colours.cell, linewidth=1.9 if full else 0.7), autolim=False)
@@ -107,7 +110,9 @@ def _balls(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> 
 
 
 def _surfels(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> list[Spot]:
-    from matplotlib.collections import LineCollection
+    from matplotlib.collections import LineCollection, PathCollection
+    from matplotlib.path import Path
+    from matplotlib.transforms import IdentityTransform
 
     near, weights = trace.neighbours[step], trace.weights[step]
     if not len(near):
@@ -118,8 +123,9 @@ def _surfels(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -
     alpha = 0.3 + 0.7 * share
     axes.add_collection(LineCollection(list(np.stack([points, tips], axis=1)), color=colours.surfel, alpha=alpha,
                                        linewidth=1.0, zorder=2.0), autolim=False)
-    axes.scatter(points[:, 0], points[:, 1], s=3 + 75 * share, color=colours.surfel, alpha=alpha, linewidth=0,
-                 zorder=2.1)
+    axes.add_collection(PathCollection(
+        [Path.circle(radius=0.5)], 3 + 75 * share, offsets=points, offset_transform=axes.transData,
+        transform=IdentityTransform(), color=colours.surfel, alpha=alpha, linewidth=0, zorder=2.1), autolim=False)
     heights, of = flat.heights(trace.surfels.points[near]), scale.unit(trace)
     return [Spot(x, y, f"surfel {i}: weight {w:.3f}, {scale.text(trace, abs(z), 2)} {of} "
                        f"{'before' if z > 0 else 'behind'} the plane")
@@ -135,25 +141,25 @@ def _plane(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> 
         return
     size = scale.size(trace)
     along = 50.0 * size * np.array([-normal[1], normal[0]]) / length
-    axes.plot(*np.stack([a - along, a + along]).T, color=colours.plane, linewidth=1.8, zorder=4,
-              scalex=False, scaley=False)
-    axes.annotate("", tuple(a + 0.8 * size * normal), tuple(a), zorder=5, annotation_clip=False, arrowprops={
-        "arrowstyle": "-|>", "color": colours.plane, "linewidth": 1.8, "shrinkA": 0, "shrinkB": 0})
+    style.line(axes, *np.stack([a - along, a + along]).T, color=colours.plane, linewidth=1.8, zorder=4)
+    tip, turned = a + 0.8 * size * normal, float(np.degrees(np.arctan2(normal[1], normal[0]))) - 90
+    style.line(axes, *np.stack([a, tip]).T, color=colours.plane, linewidth=1.8, zorder=5, marker=(3, 0, turned),
+               markersize=7, markevery=[1])
 
 
 def _points(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> list[Spot]:
     others = [i for i in range(trace.steps) if i != step]
     spots = [_spot(trace, trace.query[i], (trace.t_query[i], 0), f"Q{i + 1}", i) for i in others]
-    axes.plot(trace.t_query[others], np.zeros(len(others)), zorder=5, alpha=0.45, scalex=False, scaley=False,
-              **style.marker("query", colours, 0.6 * style.MARK))
+    style.line(axes, trace.t_query[others], np.zeros(len(others)), zorder=5, alpha=0.45,
+               **style.marker("query", colours, 0.6 * style.MARK))
     here = f"{step + 1}"
     spots += _chosen(axes, trace, step, flat, colours)
     if trace.hit:
-        axes.plot(trace.t, 0, zorder=7, **style.marker("hit", colours))
+        style.line(axes, [trace.t], [0], zorder=7, **style.marker("hit", colours))
         spots.append(_spot(trace, trace.point, (trace.t, 0), "hit"))
     left, right = axes.get_xlim()
     texts = {f"Q{here}": colours.query, f"H{here}": colours.next, "a": colours.barycentre}
-    style.label(axes, [(s.x, s.y, name, texts[name]) for s in spots if (name := s.text.split(":")[0]) in texts
+    style.label(axes, colours, [(s.x, s.y, name, texts[name]) for s in spots if (name := s.text.split(":")[0]) in texts
                        and left <= s.x <= right], apart=13)
     return spots
 
@@ -162,14 +168,15 @@ def _chosen(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) ->
     """The query, its barycentre, the next point, and the ways to them."""
     query, a, t_next = (trace.t_query[step], 0.0), flat.coordinates(trace.barycentre[step]), trace.t_next[step]
     spots = [_spot(trace, trace.query[step], query, f"Q{step + 1}", step)]
-    axes.plot(*query, zorder=6, **style.marker("query", colours))
+    style.line(axes, query[:1], query[1:], zorder=6, **style.marker("query", colours))
     if np.isfinite(a).all():
-        axes.plot([query[0], a[0]], [0, a[1]], color=colours.barycentre, linewidth=1.2, dashes=(3, 1.5), zorder=4)
-        axes.plot(*a, zorder=6.2, **style.marker("barycentre", colours))
+        style.line(axes, [query[0], a[0]], [0, a[1]], color=colours.barycentre, linewidth=1.2, dashes=(3, 1.5),
+                   zorder=4)
+        style.line(axes, a[:1], a[1:], zorder=6.2, **style.marker("barycentre", colours))
         spots.append(_spot(trace, trace.barycentre[step], tuple(a), "a"))
     if np.isfinite(t_next):
-        axes.plot([query[0], t_next], [0, 0], color=colours.next, linewidth=2.4, zorder=3.5, scalex=False)
-        axes.plot(t_next, 0, zorder=6.4, **style.marker("next", colours))
+        style.line(axes, [query[0], t_next], [0, 0], color=colours.next, linewidth=2.4, zorder=3.5)
+        style.line(axes, [t_next], [0], zorder=6.4, **style.marker("next", colours))
         spots.append(_spot(trace, trace.next_point[step], (t_next, 0), f"H{step + 1}", step))
     return spots
 

@@ -8,6 +8,8 @@ from patience import PATIENCE, settle, write_cloud
 from qtpy.QtCore import QPoint, Qt
 from qtpy.QtTest import QTest
 
+from jaart.plot.lettering import Key
+
 LEFT = Qt.MouseButton.LeftButton
 
 
@@ -30,6 +32,11 @@ def show(qtbot, window, **values):
 def titles(window, dock):
     axes = window.docks[dock].panel.canvas.figure.axes[0]
     return " ".join(text.get_text() for text in axes.texts)
+
+
+def key(axes):
+    """The names of the curves above them."""
+    return next(artist.texts for artist in axes.artists if isinstance(artist, Key))
 
 
 @pytest.fixture(params=["lattice", "cloud"])
@@ -57,7 +64,7 @@ def test_the_looks_of_a_search_are_walked_through(qtbot, window, scene, search):
 def test_a_search_that_minimises_shows_its_level(qtbot, window, scene, method):
     trace = show(qtbot, window, method=method, search="minimise")
     axes = window.docks["Energy along the ray"].panel.canvas.figure.axes[0]
-    legend = [text.get_text() for text in axes.get_legend().get_texts()]
+    legend = key(axes)
     assert len(legend) == 5
     assert legend[-1] == "level"
     line = next(line for line in axes.lines if line.get_label() == "level")
@@ -70,8 +77,7 @@ def test_a_search_that_minimises_shows_its_level(qtbot, window, scene, method):
 def test_a_stepping_search_has_no_level(qtbot, window):
     show(qtbot, window, method="tangent", search="iterate")
     axes = window.docks["Energy along the ray"].panel.canvas.figure.axes[0]
-    assert [text.get_text() for text in axes.get_legend().get_texts()] == [
-        "$e_{ts}$", "$e_{oc}$", "$e_M$ [cells²]", r"$e_{\angle}$"]
+    assert key(axes) == ["$e_{ts}$", "$e_{oc}$", "$e_M$ [cells²]", r"$e_{\angle}$"]
 
 
 @pytest.mark.parametrize("values", [{"method": "isosurface"}, {"method": "fill_level"}], ids=lambda v: v["method"])
