@@ -8,8 +8,10 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from threading import Event
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from jaart.core import extents, memory, prepare
 from jaart.core.camera import Camera, check_size
@@ -185,8 +187,8 @@ def _refined(run: _Run, size: Size, picture: Callable[[Hits], None]) -> Hits:
     left = run.seconds * run.job.count / len(pixels)
     picture(run.hits(small, few, _coarse(size, STEPS[0])))
     out = columns_for(run.job.count)
-    for column, rows in zip((*out, run.job.origins, run.job.directions), (*few, small.origins, small.directions),
-                            strict=True):
+    columns: tuple[NDArray[Any], ...] = (*out, run.job.origins, run.job.directions)
+    for column, rows in zip(columns, (*few, small.origins, small.directions), strict=True):
         column[pixels] = rows
     for step, before in _finer(left):
         run.trace(run.job, pixels_at(size, step, before), out)
