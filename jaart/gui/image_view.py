@@ -10,11 +10,8 @@ from qtpy.QtGui import QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QR
 from qtpy.QtWidgets import QApplication, QWidget
 
 from jaart.core.camera import Camera
-from jaart.core.picture import plain
-from jaart.core.quality import known
 from jaart.core.records import Hits
 from jaart.core.settings import PARAMETERS, Settings
-from jaart.core.shade import shade
 from jaart.gui import navigation, overlay, theme
 from jaart.gui.model import SceneModel
 
@@ -63,6 +60,9 @@ class ImageView(QWidget):
         self.update()
 
     def _colour(self, hits: Hits) -> None:
+        from jaart.core.picture import plain
+        from jaart.core.shade import shade
+
         model, settings = self.model, plain(self.model.settings)
         errors = model.quality if model.map.endswith("_error") else None
         finished = model.shader.colours
@@ -76,7 +76,7 @@ class ImageView(QWidget):
 
     def _was_exact(self) -> bool:
         """Whether errors are on show that the next full picture will bring anew."""
-        exact = self.model.scene is not None and known(self.model.scene)
+        exact = self.model.scene is not None and self.model.scene.known
         return exact and not self.image.isNull() and not self.model.idle
 
     def picture_area(self) -> QRectF:
@@ -229,4 +229,5 @@ def shading(settings: Settings) -> tuple[Any, ...]:
 
 def same(one: Any, other: Any) -> bool:
     """Whether two values are the same: arrays and records themselves, anything else by value."""
-    return one is other or (not isinstance(one, np.ndarray) and bool(one == other))
+    arrays = isinstance(one, np.ndarray) or isinstance(other, np.ndarray)
+    return one is other or (not arrays and bool(one == other))
