@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 import jaart
+from benchmarks.vectors import unit
 from jaart.core.samples import fibonacci
 from jaart.core.scene import Scene
 from tests.reference.tangent import Tangent, dot, mpf
@@ -110,10 +111,6 @@ def regular(scene: Scene, settings: jaart.Settings, count: int, shift: float = 0
         here = surface.at([mpf(p) + mpf(near) * q for p, q in zip(o, way, strict=True)])
         t.append(mpf(near) + here.f / dot(here.n, way))
     return Rays(hits.origin, hits.direction, t)
-
-
-def unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 import jaart
+from benchmarks.vectors import unit
 from jaart.core.samples import COUNT, standard_bumps
 from jaart.core.scene import Scene
 
@@ -111,10 +112,6 @@ def program(thing: Object) -> np.ndarray:
         hits = jaart.render(scene, settings.replace(tolerance=tolerance), rays=(thing.o, thing.d))
         taken.append(np.where(hits.hit, hits.iterations, STEPS + 1))
     return np.array(taken)
-
-
-def unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 if __name__ == "__main__":

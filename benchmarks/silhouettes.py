@@ -13,6 +13,7 @@ import numpy as np
 
 import jaart
 from benchmarks.dense import looked
+from benchmarks.vectors import unit
 from jaart.core import extents
 from jaart.core.scene import Array, Model, Scene
 from jaart.core.settings import Settings
@@ -103,11 +104,6 @@ def _outside(scene: Scene, chosen: Settings, origins: Array, away: Array, aside:
         moved = origins[todo] + far[todo, None] * aside[todo]
         todo[todo] = ~np.isnan(looked(scene, chosen, moved, away[todo], 0.4))
     return far
-
-
-def unit(vectors: Array) -> Array:
-    """Vectors of length 1."""
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
 
 def compared(name: str, count: int) -> dict[tuple[str, str], Count]:

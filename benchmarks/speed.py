@@ -3,29 +3,20 @@
 from __future__ import annotations
 
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import jaart
 from benchmarks.standard import SIZE, camera
-
-REPEATS = 7
+from benchmarks.timing import REPEATS, Spread, timed
 
 
 def spread(seconds: list[float]) -> str:
     """Median, least and greatest in milliseconds."""
-    return f"median {1e3 * statistics.median(seconds):7.1f} ms   ({1e3 * min(seconds):.1f} … {1e3 * max(seconds):.1f})"
-
-
-def timed(work: Callable[[], object]) -> float:
-    begin = time.perf_counter()
-    work()
-    return time.perf_counter() - begin
+    median = Spread(tuple(seconds)).median
+    return f"median {1e3 * median:7.1f} ms   ({1e3 * min(seconds):.1f} … {1e3 * max(seconds):.1f})"
 
 
 def rays(name: str, raster: int | None) -> None:

@@ -1,4 +1,4 @@
-"""Print the Debian packages of the system libraries that the window needs and this machine lacks."""
+"""Print the Debian packages of the system libraries that the window or the peers need and this machine lacks."""
 
 import sys
 from pathlib import Path
@@ -8,4 +8,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from jaart.gui.libraries import NEEDED, NEEDED_X11, missing
 
-print(*missing({**NEEDED, **NEEDED_X11, "libgomp.so.1": "libgomp1"}))
+PEERS = {"libusb-1.0.so.0": "libusb-1.0-0", "libGL.so.1": "libgl1", "libX11.so.6": "libx11-6",
+         "libgomp.so.1": "libgomp1"}
+WINDOW = {**NEEDED, **NEEDED_X11, "libgomp.so.1": "libgomp1"}
+
+print(*missing(PEERS if sys.argv[1:] == ["peers"] else WINDOW))

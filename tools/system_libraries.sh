@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# system_libraries.sh window|test: what pip cannot bring. Quick when all is there; else apt-get as root.
+# system_libraries.sh window|test|peers: what pip cannot bring. Quick when all is there; else apt-get as root.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/apt.sh
 
 [ "$(uname -s)" = Linux ] || exit 0
-packages=$(.venv/bin/python -I tools/missing_packages.py)
+packages=$(.venv/bin/python -I tools/missing_packages.py "$1")
 if [ "$1" = test ]; then
     command -v xvfb-run >/dev/null || packages="$packages xvfb"
     command -v xauth >/dev/null || packages="$packages xauth"

@@ -18,11 +18,12 @@ from jaart.core.kernels import ball_ray, gather, guess
 from jaart.core.kernels.ball_ray import NOTHING, ROOM, Balls
 from jaart.core.kernels.gather import Grid
 from jaart.core.kernels.leaving import ROUNDING
+from jaart.core.kernels.pinhole import View
 from jaart.core.kernels.records import Out, Plan, Sites
 from jaart.core.kernels.tree import Tree
 from jaart.core.scene import Array
 from jaart.core.tiles import Pixels, columns_for
-from jaart.core.tracers import NO_LOG, scratch
+from jaart.core.tracers import NO_BEGINS, NO_BLOCKS, NO_LOG, scratch
 
 Ints = NDArray[np.int64]
 #: Room for the heap at first; it doubles where a ray needs more.
@@ -100,7 +101,7 @@ class CloudTracer:
         return self._balls.ready if self.guessing else 0
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
-              any_hit: bool = False) -> int:
+              any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
         """Trace some rays, in the cloud's own coordinates, into their rows of the columns; see `Tracer`."""
         local = origins[pixels] - self.cloud.offset
         ways, rows, todo, written = directions[pixels], np.arange(len(pixels)), np.arange(len(pixels)), 0
@@ -120,6 +121,10 @@ class CloudTracer:
         for name, column in out._asdict().items():
             column[pixels] = getattr(mine, name)
         return int(written)
+
+    def blocks(self, view: View) -> Array:
+        """Nothing is known: the tree leads rays through what is empty."""
+        return NO_BLOCKS
 
     def _gather(self, balls: Ints) -> None:
         """Gather the surfels near some balls, and what is kept at their centres, behind those that are there."""

@@ -16,7 +16,7 @@ from jaart.core.kernels.records import LOG_WIDTH, Cells, Out, Plan
 from jaart.core.scene import Array
 from jaart.core.surfels import Surfels
 from jaart.core.tiles import Pixels, columns_for
-from jaart.core.tracers import NO_LOG, OnLattice
+from jaart.core.tracers import NO_BEGINS, NO_LOG, OnLattice
 
 #: Room for rounding in a neighbourhood's radius, in cells.
 _ROUNDING = 1e-6
@@ -33,7 +33,7 @@ class CylinderTracer(OnLattice):
     radius: float
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
-              any_hit: bool = False) -> int:
+              any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
         """Trace some rays into their rows of the columns; see `Tracer`. The first hit costs no more than any."""
         return int(cylinder.cylinder_rays(self.cells, self.radius, origins, directions, pixels, out, log))
 

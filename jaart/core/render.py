@@ -6,7 +6,7 @@ import os
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from threading import Event
 from typing import Any
 
@@ -22,7 +22,8 @@ from jaart.core.prepare import Prepared
 from jaart.core.records import Array, Hits
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings, preset
-from jaart.core.tiles import STEPS, Pixels, columns_for, pixels_at, tiles
+from jaart.core.tiles import STEPS, Pixels, columns_for, in_blocks, pixels_at, tiles
+from jaart.core.tracers import NO_BEGINS, NO_BLOCKS
 from jaart.core.warm import warm_up
 
 #: What one ray and its hit take.
@@ -51,14 +52,15 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
     job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays, any_hit)
     warm_up(scene, settings)
     ready = prepare.prepared(scene, settings, cancel)
-    count = threads or os.cpu_count() or 1
+    count, begin = threads or os.cpu_count() or 1, time.perf_counter()
     with ThreadPoolExecutor(count) as pool:
-        run = _Run(pool, count, ready, job, settings, _Watch(progress, cancel, job.count), time.perf_counter())
+        watch = _Watch(progress, cancel, job.count)
+        run = _Run(pool, count, ready, job.beginning(ready), settings, watch, begin)
         if picture and job.size:
             return _refined(run, job.size, picture)
         out = columns_for(job.count)
-        run.trace(job, np.arange(job.count), out)
-        return run.hits(job, out, job.size)
+        run.trace(run.job, in_blocks(job.size, 1) if job.size else np.arange(job.count), out)
+        return run.hits(run.job, out, job.size)
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,8 @@ class _Job:
     """The rays to trace: those of a camera, written tile by tile, or a list.
 
     origins, directions: (R, 3); view: the camera as the kernels take it, None for a list; any_hit: not only the
-    first hit will do; pixels: (R,) of the picture, None for all of them in order.
+    first hit will do; pixels: (R,) of the picture, None for all of them in order; blocks: t before which blocks of
+    pixels meet nothing, begins: (R,) that of each ray, or both without entries.
     """
 
     origins: Array
@@ -76,6 +79,8 @@ class _Job:
     view: View | None = None
     any_hit: bool = False
     pixels: Pixels | None = None
+    blocks: Array = field(default_factory=lambda: NO_BLOCKS)
+    begins: Array = field(default_factory=lambda: NO_BEGINS)
 
     @property
     def count(self) -> int:
@@ -86,13 +91,18 @@ class _Job:
         """Trace some of the rays into their rows of the columns."""
         if self.view is not None:
             pixels = rows if self.pixels is None else self.pixels[rows]
-            write_rays(self.view, pixels, rows, self.origins, self.directions)
-        ready.tracer.trace(self.origins, self.directions, rows, out, any_hit=self.any_hit)
+            write_rays(self.view, pixels, rows, self.origins, self.directions, self.blocks, self.begins)
+        ready.tracer.trace(self.origins, self.directions, rows, out, any_hit=self.any_hit, begins=self.begins)
 
     def some(self, pixels: Pixels) -> _Job:
         """The rays of some pixels, in rows of their own."""
         few = np.empty((len(pixels), 3)), np.empty((len(pixels), 3))
-        return _Job(*few, self.camera, self.size, self.view, self.any_hit, pixels)
+        return replace(self, origins=few[0], directions=few[1], pixels=pixels, begins=self.begins[:len(pixels)].copy())
+
+    def beginning(self, ready: Prepared) -> _Job:
+        """This job with what is known of where the rays of a picture can meet anything."""
+        blocks = NO_BLOCKS if self.view is None else ready.tracer.blocks(self.view)
+        return replace(self, blocks=blocks, begins=np.empty(self.count if blocks.size else 0))
 
 
 @dataclass
@@ -191,7 +201,7 @@ def _refined(run: _Run, size: Size, picture: Callable[[Hits], None]) -> Hits:
     for column, rows in zip(columns, (*few, small.origins, small.directions), strict=True):
         column[pixels] = rows
     for step, before in _finer(left):
-        run.trace(run.job, pixels_at(size, step, before), out)
+        run.trace(run.job, in_blocks(size, step, before), out)
         if step > 1:
             picture(run.hits(run.job, out, _coarse(size, step), pixels_at(size, step)))
     return run.hits(run.job, out, size)

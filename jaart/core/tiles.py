@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core.kernels.pinhole import EDGE
 from jaart.core.kernels.records import Out
 
 #: Rays in a tile: long enough to hide the cost of a task, short enough to stop soon.
@@ -29,6 +32,16 @@ def pixels_at(size: tuple[int, int], step: int, before: int = 0) -> Pixels:
     return np.flatnonzero(wanted)
 
 
+@functools.lru_cache(maxsize=4)
+def in_blocks(size: tuple[int, int], step: int, before: int = 0) -> Pixels:
+    """The same pixels block by block, so that rays that are traced one after the other are neighbours."""
+    pixels, edge = pixels_at(size, step, before), EDGE * step
+    blocks = pixels // size[0] // edge * (size[0] // edge + 1) + pixels % size[0] // edge
+    pixels = pixels[np.argsort(blocks, kind="stable")]
+    pixels.flags.writeable = False
+    return pixels
+
+
 def tiles(pixels: Pixels, threads: int = 1) -> list[Pixels]:
     """The pixels in pieces of at most TILE, some for each thread."""
     length = max(LEAST, min(TILE, -(-len(pixels) // (PIECES * threads))))
@@ -36,11 +49,10 @@ def tiles(pixels: Pixels, threads: int = 1) -> list[Pixels]:
 
 
 def columns_for(count: int) -> Out:
-    """Empty columns for so many rays."""
+    """Columns for so many rays, each row of which is written when its ray has ended."""
     def numbers() -> NDArray[np.int32]:
-        return np.zeros(count, np.int32)
+        return np.empty(count, np.int32)
 
-    return Out(t=np.full(count, np.nan), point=np.full((count, 3), np.nan), normal=np.full((count, 3), np.nan),
-               energy=np.full(count, np.nan), off_centre=np.full(count, np.nan), iterations=numbers(),
-               evaluations=numbers(), neighbours=numbers(), cells=numbers(),
-               lowered=numbers(), gap=np.full(count, np.nan), status=np.zeros(count, np.uint8))
+    return Out(t=np.empty(count), point=np.empty((count, 3)), normal=np.empty((count, 3)), energy=np.empty(count),
+               off_centre=np.empty(count), iterations=numbers(), evaluations=numbers(), neighbours=numbers(),
+               cells=numbers(), lowered=numbers(), gap=np.empty(count), status=np.empty(count, np.uint8))

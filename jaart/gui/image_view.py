@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 from qtpy.QtCore import QPointF, QRectF, QSize, Qt, QTimer
 from qtpy.QtGui import QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
 from qtpy.QtWidgets import QApplication, QWidget
@@ -34,7 +33,8 @@ class ImageView(QWidget):
         self.setMinimumSize(240, 200)
         self.setFont(theme.tabular(self.font()))
         self.model, self.image = model, QImage()
-        self._coloured: tuple[Any, ...] = ()
+        self._results: tuple[Any, ...] = (None, None, None)
+        self._values: tuple[Any, ...] = ()
         self.hovered: tuple[int, int] | None = None
         self._pressed: QPointF | None = None
         self._last = QPointF()
@@ -54,7 +54,7 @@ class ImageView(QWidget):
         """Colour the hits again, if anything that their colours depend on has changed."""
         model, hits = self.model, self.model.hits
         if hits is None:
-            self.image, self._coloured = QImage(), ()
+            self.image, self._values = QImage(), ()
         elif model.quality is not None or not model.map.endswith("_error") or not self._was_exact():
             self._colour(hits)
         self.update()
@@ -66,10 +66,10 @@ class ImageView(QWidget):
         model, settings = self.model, plain(self.model.settings)
         errors = model.quality if model.map.endswith("_error") else None
         finished = model.shader.colours
-        depends = (hits.t, errors, finished, model.map, model.theme, *shading(settings))
-        if len(depends) == len(self._coloured) and all(map(same, depends, self._coloured)):
+        results, values = (hits.t, errors, finished), (model.map, model.theme, *shading(settings))
+        if values == self._values and all(one is other for one, other in zip(results, self._results, strict=True)):
             return
-        self._coloured = depends
+        self._results, self._values = results, values
         pixels = shade(hits, model.map, errors, model.theme, settings) if finished is None else finished
         height, width = pixels.shape[:2]
         self.image = QImage(pixels.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
@@ -225,9 +225,3 @@ class ImageView(QWidget):
 def shading(settings: Settings) -> tuple[Any, ...]:
     """The values that enter the colours of hits."""
     return tuple(getattr(settings, about.name) for about in PARAMETERS.values() if about.stage == "shade")
-
-
-def same(one: Any, other: Any) -> bool:
-    """Whether two values are the same: arrays and records themselves, anything else by value."""
-    arrays = isinstance(one, np.ndarray) or isinstance(other, np.ndarray)
-    return one is other or (not arrays and bool(one == other))

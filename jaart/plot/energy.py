@@ -239,10 +239,10 @@ def _steps(axes: Axes, trace: Trace, step: int, colours: Theme) -> list[Spot]:
             _marks(axes, trace, chosen, shown, colours, alpha, smaller)
     spots = [spot for i in number for spot in _spots(trace, int(i), shown[i])]
     left, right = axes.get_xlim()
-    inks = {"Q": colours.query, "H": colours.next}
-    style.label(axes, colours, [(s.x, s.y, s.text[:s.text.index(":")], inks[s.text[0]])
-                                for s in sorted(spots, key=lambda s: (s.step != step, -(s.step or 0)))
-                                if left <= s.x <= right and same[s.step]])
+    named = [(s.x, s.y, s.text[:s.text.index(":")], colours.query if s.text[0] == "Q" else colours.next)
+             for s in sorted(spots, key=lambda s: (s.step != step, -(s.step or 0)))
+             if left <= s.x <= right and same[s.step]]
+    style.label(axes, colours, named)
     if trace.hit:
         style.line(axes, [trace.t], [0], zorder=8, **style.marker("hit", colours))
         spots.append(Spot(trace.t, 0.0, f"hit: t = {scale.text(trace, trace.t)}"))

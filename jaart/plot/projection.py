@@ -124,8 +124,8 @@ def _surfels(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -
     axes.add_collection(LineCollection(list(np.stack([points, tips], axis=1)), color=colours.surfel, alpha=alpha,
                                        linewidth=1.0, zorder=2.0), autolim=False)
     axes.add_collection(PathCollection(
-        [Path.circle(radius=0.5)], 3 + 75 * share, offsets=points, offset_transform=axes.transData,
-        transform=IdentityTransform(), color=colours.surfel, alpha=alpha, linewidth=0, zorder=2.1), autolim=False)
+        [Path.circle(radius=0.5)], 3 + 75 * share, offsets=points, offset_transform=axes.transData, alpha=alpha,
+        color=colours.surfel, transform=IdentityTransform(), linewidth=0, zorder=2.1), autolim=False)
     heights, of = flat.heights(trace.surfels.points[near]), scale.unit(trace)
     return [Spot(x, y, f"surfel {i}: weight {w:.3f}, {scale.text(trace, abs(z), 2)} {of} "
                        f"{'before' if z > 0 else 'behind'} the plane")

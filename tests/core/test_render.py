@@ -17,7 +17,7 @@ from jaart.core.render import render
 from jaart.core.scene import Model, Scene, frozen
 from jaart.core.settings import Settings
 from jaart.core.shapes import Box
-from jaart.core.tiles import LEAST, STEPS, TILE, pixels_at, tiles
+from jaart.core.tiles import LEAST, STEPS, TILE, in_blocks, pixels_at, tiles
 
 COLUMNS = ("t", "point", "normal", "energy", "off_centre", "iterations", "evaluations", "neighbours", "cells",
            "status")
@@ -67,8 +67,14 @@ def test_tiles_hold_every_ray_once_and_some_are_there_for_each_thread(rays: int,
 
 @pytest.mark.parametrize("size", [(1, 1), (8, 8), (9, 17), (3, 40)])
 def test_passes_hold_every_pixel_once(size: tuple[int, int]) -> None:
-    pixels = np.concatenate([pixels_at(size, step, before) for step, before in zip(STEPS, (0, *STEPS), strict=False)])
-    assert np.array_equal(np.sort(pixels), np.arange(size[0] * size[1]))
+    for order in (pixels_at, in_blocks):
+        pixels = np.concatenate([order(size, step, before) for step, before in zip(STEPS, (0, *STEPS), strict=False)])
+        assert np.array_equal(np.sort(pixels), np.arange(size[0] * size[1]))
+
+
+def test_pixels_that_are_traced_together_are_a_block() -> None:
+    x, y = in_blocks((24, 20), 1)[64:128] % 24, in_blocks((24, 20), 1)[64:128] // 24
+    assert sorted(zip(x.tolist(), y.tolist(), strict=True)) == [(i, j) for i in range(8, 16) for j in range(8)]
 
 
 def test_a_list_of_rays_gives_the_hits_of_the_picture(standard: Scene) -> None:

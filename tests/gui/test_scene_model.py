@@ -23,14 +23,27 @@ def counted(signal):
 def test_a_scene_gives_coarse_pictures_then_the_full_one_and_its_quality(qtbot, model, monkeypatch):
     monkeypatch.setattr("jaart.core.render.PATIENCE", 0.0)
     model.set_size(64, 64)
-    sizes = []
+    sizes, measured = [], []
     model.hits_changed.connect(lambda: sizes.append(model.hits.size if model.hits else None))
+    model.hits_changed.connect(lambda: measured.append(model.quality is not None))
     model.open("standard")
     settle(qtbot, model)
-    assert sizes == [None, (8, 8), (16, 16), (32, 32), (64, 64), (64, 64)]  # the last with its quality
+    assert sizes == [None, (8, 8), (16, 16), (32, 32), (64, 64), (64, 64)]
+    assert measured == [False, False, False, False, False, True]
     assert model.complete
     assert 0 < model.quality.delta < 1
     assert len(model.quality.distance) == 64 * 64
+
+
+def test_a_ray_is_traced_once_for_a_picture_that_comes_again_with_its_errors(qtbot, standard):
+    standard.pick(48, 48)
+    settle(qtbot, standard)
+    pictures, traces = counted(standard.hits_changed), counted(standard.trace_changed)
+    standard.set_value("h", 1.6)
+    settle(qtbot, standard)
+    assert standard.quality is not None
+    assert len(pictures) >= 3
+    assert len(traces) == 1
 
 
 def test_a_file_that_cannot_be_read_leaves_the_old_scene(qtbot, standard, tmp_path):

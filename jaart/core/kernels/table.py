@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import ceil
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,9 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.records import Array, Cell
 
 Ints = NDArray[np.int32]
+Distances = NDArray[np.uint8]
+_BEFORE: Any = np.int64(-1)
+_BEHIND: Any = np.int64(1)
 
 
 @kernel(STRICT)
@@ -49,41 +53,52 @@ def scan_near(cells: Ints, offsets: Array, normals: Array, begin: int, end: int,
                         counted[c] += 1
 
 
+#: The largest distance there is.
+_FARTHEST = 255
+
+
 @kernel(STRICT)
-def least_ahead(line: NDArray[np.uint8], i: int) -> int:
-    """The least of max(line[j], |i - j|) over a line: its distances carried along the line to place i."""
-    best, reach = int(line[i]), 1
-    while reach < best:
-        if i >= reach:
-            best = min(best, max(int(line[i - reach]), reach))
-        if i + reach < line.shape[0]:
-            best = min(best, max(int(line[i + reach]), reach))
-        reach += 1
-    return best
+def carry(empty: Distances, row: Distances, i: int, j: int) -> None:
+    """Lessen the distances of a row along z to one more than those of its neighbours in row (i, j), if there is one.
+
+    row: (nz + 2,), with an end on each side that is no cell.
+    """
+    if not (0 <= i < empty.shape[0] and 0 <= j < empty.shape[1]):
+        return
+    other, last = empty[i, j], empty.shape[2] - 1
+    for k in range(last + 1):
+        nearest = min(min(other[max(k - 1, 0)], other[k]), other[min(k + 1, last)])
+        row[k + 1] = min(int(row[k + 1]), int(nearest) + 1)
+
+
+@kernel(STRICT)
+def sweep(empty: Distances, row: Distances, i: int, j: int, way: int) -> None:
+    """Lessen the distances of a row by those of the rows, and then the cells, before it; way: -1 or 1 to those."""
+    n = empty.shape[2]
+    for k in range(n):
+        row[k + 1] = empty[i, j, k]
+    for beside in range(-1, 2):
+        carry(empty, row, i + way, j + beside)
+    carry(empty, row, i, j + way)
+    for step in range(n):
+        k = step + 1 if way < 0 else n - step
+        row[k] = min(int(row[k]), int(row[k + way]) + 1)
+    for k in range(n):
+        empty[i, j, k] = row[k + 1]
 
 
 @kernel(STRICT, entry=True, allocates=True)
-def fill_empty(empty: NDArray[np.uint8]) -> None:
-    """Turn 0 at cells with a surfel and 255 elsewhere into Chebyshev distances, in place.
+def fill_empty(empty: Distances) -> None:
+    """Turn 0 at cells with a surfel and 255 elsewhere into Chebyshev distances, in place, 255 for all beyond.
 
-    The distances are carried along z, then along y, then along x.
+    Each cell takes one more than its nearest neighbour of those before it, then of those behind it: two sweeps are
+    enough for this distance [Rosenfeld & Pfaltz 1966].
     """
     nx, ny, nz = empty.shape
-    line = np.empty(max(nx, max(ny, nz)), np.uint8)
+    row = np.full(nz + 2, _FARTHEST, np.uint8)
     for i in range(nx):
         for j in range(ny):
-            for k in range(nz):
-                line[k] = empty[i, j, k]
-            for k in range(nz):
-                empty[i, j, k] = least_ahead(line[:nz], k)
-        for k in range(nz):
-            for j in range(ny):
-                line[j] = empty[i, j, k]
-            for j in range(ny):
-                empty[i, j, k] = least_ahead(line[:ny], j)
-    for j in range(ny):
-        for k in range(nz):
-            for i in range(nx):
-                line[i] = empty[i, j, k]
-            for i in range(nx):
-                empty[i, j, k] = least_ahead(line[:nx], i)
+            sweep(empty, row, i, j, _BEFORE)
+    for i in range(nx - 1, -1, -1):
+        for j in range(ny - 1, -1, -1):
+            sweep(empty, row, i, j, _BEHIND)
