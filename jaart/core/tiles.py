@@ -38,7 +38,6 @@ def in_blocks(size: tuple[int, int], step: int, before: int = 0) -> Pixels:
     pixels, edge = pixels_at(size, step, before), EDGE * step
     blocks = pixels // size[0] // edge * (size[0] // edge + 1) + pixels % size[0] // edge
     pixels = pixels[np.argsort(blocks, kind="stable")]
-    pixels.flags.writeable = False
     return pixels
 
 
