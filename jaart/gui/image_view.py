@@ -51,13 +51,16 @@ class ImageView(QWidget):
         return QSize(820, 640)
 
     def refresh(self) -> None:
-        """Colour the hits again, if anything that their colours depend on has changed."""
-        model, hits = self.model, self.model.hits
+        """Colour the hits again, if anything that their colours depend on has changed, and paint them at once."""
+        model, hits, before = self.model, self.model.hits, self.image
         if hits is None:
             self.image, self._values = QImage(), ()
         elif model.quality is not None or not model.map.endswith("_error") or not self._was_exact():
             self._colour(hits)
-        self.update()
+        if self.image is not before:
+            self.repaint()  # before the panels that tell its numbers
+        else:
+            self.update()
 
     def _colour(self, hits: Hits) -> None:
         from jaart.core.picture import plain

@@ -140,12 +140,12 @@ class SceneModel(Look):
         self._set_fault(None)
         if self.hits is not None:
             self.hits = results.with_settings(self.hits, settings)
-        self.settings_changed.emit()
         if self.scene is not None and (refused or settings.key("rays") != old.key("rays")):
             self._keep_view()
-            self._render()
+            self._render()  # before the panels are told: rays are traced meanwhile
         elif settings.key("trace") != old.key("trace"):
             self._trace()
+        self.settings_changed.emit()
 
     def set_camera(self, camera: Camera, dragging: bool = False) -> None:
         """Look from elsewhere; while dragging, smaller pictures are made so that they keep up."""
@@ -242,10 +242,10 @@ class SceneModel(Look):
                             self._made, self._show, brief=dragging)
 
     def _made(self, made: Made) -> None:
-        if made.known != self.known:
-            self.known = made.known
-            self.known_changed.emit()
+        known, self.known = self.known, made.known
         self._show(made.hits)
+        if made.known != known:
+            self.known_changed.emit()
 
     def show_quality(self, quality: Quality | None) -> None:
         """Take the errors of the picture that is shown."""

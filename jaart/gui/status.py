@@ -46,7 +46,7 @@ class Status(QStatusBar):
             self.figures.setText("")
 
     def _progress(self, share: float, what: str = "Tracing rays") -> None:
-        if not self.model.computing:
+        if not self.model.computing or self._late.isActive():
             return
         self.bar.setVisible(share < 1)
         self.bar.setValue(round(100 * share))
