@@ -168,8 +168,8 @@ class SceneModel(Look):
     def pick(self, x: int, y: int) -> None:
         """Trace the ray through pixel (x, y); a pixel outside the picture is moved to its edge."""
         self.picked = (min(max(x, 0), self.size[0] - 1), min(max(y, 0), self.size[1] - 1))
-        self.picked_changed.emit()
         self._trace()
+        self.picked_changed.emit()
 
     def clear_pick(self) -> None:
         """Forget the picked ray."""
