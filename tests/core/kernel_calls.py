@@ -15,7 +15,7 @@ from jaart.core.kernels.fitted import polynomial
 from jaart.core.kernels.records import Near, Rule, Value
 from jaart.core.kernels.tangent import tangent_covariance, tangent_surfel
 from jaart.core.kernels.weigh import weigh
-from jaart.core.tracers import SCRATCH_A_SURFEL
+from jaart.core.places import SCRATCH_A_SURFEL
 
 Array = NDArray[np.float64]
 Vectors = Sequence[Sequence[float]]
@@ -25,7 +25,7 @@ def near_of(points: Vectors, normals: Vectors | None = None) -> Near:
     """All the surfels as those near one place at the origin; without normals they have (0, 0, 1)."""
     ahead = [[0.0, 0.0, 1.0]] * len(points) if normals is None else normals
     columns = np.concatenate([np.array(points, float).reshape(-1, 3), np.array(ahead, float).reshape(-1, 3)], axis=1)
-    return Near(np.ascontiguousarray(columns.T).ravel(), np.uint64(0), np.uint64(len(points)))
+    return Near(np.ascontiguousarray(columns.T).ravel(), np.uint64(0), np.uint64(len(points)), np.uint64(len(points)))
 
 
 def rule_of(weight: str = "gaussian", normal: str = "surfel", h: float = 0.8, reach: float = math.inf, k: int = 0,
@@ -41,7 +41,7 @@ def place(x: Sequence[float]) -> tuple[float, float, float]:
 
 
 def work_for(near: Near) -> Array:
-    """Scratch as `tracers.scratch` makes it."""
+    """Scratch as `places.scratch` makes it."""
     return np.empty(SCRATCH_A_SURFEL * max(int(near.size), 1))
 
 

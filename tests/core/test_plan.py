@@ -21,6 +21,7 @@ from jaart.core.kernels import records as r
 from jaart.core.kernels.near import surfels_near as compiled_near
 from jaart.core.kernels.records import FIT_SIZE, Near, Sites, Start
 from jaart.core.meaning import check
+from jaart.core.places import served
 from jaart.core.plan import RESOLVED, Plan, plan
 from jaart.core.render import render
 from jaart.core.scene import Model, Scene, frozen
@@ -183,7 +184,7 @@ SEARCHES = (stepping, probe, safe, march, minimise, centres)
 def surfels_near(sites: Sites, place: Any) -> Near:
     """The surfels near a place, their numbers unsigned as kernels hand them to each other."""
     near = compiled_near(sites, place)
-    return Near(near.columns, np.uint64(near.base), np.uint64(near.size))
+    return Near(near.columns, np.uint64(near.base), np.uint64(near.size), np.uint64(near.wide))
 
 
 @pytest.mark.parametrize("search", [s for s in PARAMETERS["search"].choices if s != "auto"])
@@ -204,8 +205,9 @@ def test_only_searches_that_are_said_to_ask_for_the_gradient(search: str, monkey
                 monkeypatch.setattr(module, name, call)
     top = cells[np.argmax(cells[:, 2])]
     start = Start((int(top[0]), int(top[1]), int(top[2])), (0.0, 0.0, 0.5), 5.0, 0.0, 0.0, 2.0, float("nan"), 1)
-    end = kernel(ready.sites, ready.plan.rule, ready.plan.how, ready.plan.bounds, (0.0, 0.0, -1.0), start,
-                 np.empty((0, r.LOG_WIDTH)), 0, *ready.scratch())
+    end = served(ready.sites, lambda own, pool: kernel(
+        own, ready.plan.rule, ready.plan.how, ready.plan.bounds, (0.0, 0.0, -1.0), start, np.empty((0, r.LOG_WIDTH)), 0,
+        pool.work, pool.fit))
     assert end.state == r.CONVERGED
     assert plan(scene, settings)["gradient of f"].runs == (r.WITH_GRADIENT in asked)
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from jaart.core import prepare
 from jaart.core.kernels import records, traversal
 from jaart.core.kernels.ray import trace_ray
+from jaart.core.places import served
 from jaart.core.render import render
 from jaart.core.scene import Model, Scene
 from jaart.core.settings import Settings
@@ -137,6 +138,13 @@ def lattice_of(ready: prepare.Prepared) -> records.Cells:
     return ready.tracer.cells
 
 
+def ended(cells: records.Cells, plan: records.Plan, o: Vector, d: Vector, rows: np.ndarray) -> records.RayEnd:
+    """How a ray ends, with all gathered that it asks for."""
+    end: records.RayEnd = served(cells.sites, lambda own, pool: trace_ray(cells._replace(sites=own), plan, o, d, rows,
+                                                                        pool.work, pool.fit))
+    return end
+
+
 def starts(ready: prepare.Prepared, cells: records.Cells, origin: Vector, direction: Vector) -> list[tuple[float, ...]]:
     """(t, cell) of every start on a ray on which each start fails at once."""
     plan = ready.tracer.plan
@@ -144,7 +152,7 @@ def starts(ready: prepare.Prepared, cells: records.Cells, origin: Vector, direct
     rows = np.empty((200, records.LOG_WIDTH))
     o = (float(origin[0]), float(origin[1]), float(origin[2]))
     d = (float(direction[0]), float(direction[1]), float(direction[2]))
-    end = trace_ray(cells, fail, o, d, rows, *ready.tracer.scratch())
+    end = ended(cells, fail, o, d, rows)
     logged = rows[:end.rows, [records.T, records.CELL_I, records.CELL_J, records.CELL_K]]
     return [(t, i, j, k) for t, i, j, k in logged.tolist()]
 
@@ -185,8 +193,7 @@ def test_skipping_visits_fewer_cells() -> None:
     slow = fast._replace(empty=np.minimum(fast.empty, 1).astype(np.uint8))
     o, d = (-5.0, 15.2, 16.3), (1.0, 0.0, 0.0)
     rows = np.empty((0, records.LOG_WIDTH))
-    fast_end, slow_end = (trace_ray(cells, ready.tracer.plan, o, d, rows, *ready.tracer.scratch())
-                          for cells in (fast, slow))
+    fast_end, slow_end = (ended(cells, ready.tracer.plan, o, d, rows) for cells in (fast, slow))
     assert np.isnan([fast_end.gap, slow_end.gap]).all()
     assert fast_end._replace(cells=0, gap=0.0) == slow_end._replace(cells=0, gap=0.0)
     assert fast_end.cells < slow_end.cells / 1.5

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
+from jaart.core.kernels.blocks import is_short
 from jaart.core.kernels.call import search_from
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.leaving import FARTHEST, Leave, counting, least_of_energies, leave
@@ -229,8 +230,9 @@ def write_end(out: Out, to: int, end: RayEnd) -> None:
 
 @kernel(STRICT, entry=True)
 def trace_rays(cells: Cells, plan: Plan, origins: Array, directions: Array, pixels: NDArray[np.int64], out: Out,
-               rows: Array, work: Array, fit: Array) -> int:
-    """Trace some of the rays and write each into its row of the columns; returns the rows of the log it wrote.
+               rows: Array, work: Array, fit: Array) -> tuple[int, int]:
+    """Trace some of the rays and write each into its row of the columns; returns how many of them, before one for which
+    the pool was short, and the rows of the log it wrote.
 
     origins, directions: (R, 3) in cells, directions of unit length; pixels: rows to trace; rows: the log of a
     single ray, (0, LOG_WIDTH) for none; work, fit: scratch of this call alone.
@@ -242,6 +244,8 @@ def trace_rays(cells: Cells, plan: Plan, origins: Array, directions: Array, pixe
         o = (origins[to, 0], origins[to, 1], origins[to, 2])
         d = (directions[to, 0], directions[to, 1], directions[to, 2])
         end = trace_ray(cells, plan, o, d, log, scratch, fitted)
+        if is_short(cells.sites.pool):
+            return i, 0
         write_end(out, to, end)
         written = end.rows
-    return written
+    return pixels.shape[0], written
