@@ -13,12 +13,13 @@ from jaart.core.kernels.ball_ray import Balls
 from jaart.core.kernels.gather import Grid, gather_ball
 from jaart.core.kernels.guess import GUESS_WIDTH
 from jaart.core.kernels.leaving import ROUNDING
+from jaart.core.kernels.pinhole import View
 from jaart.core.kernels.records import Out, Plan, Sites
 from jaart.core.kernels.tree import Tree
 from jaart.core.places import HEAP, Places, Pool, address, places_of
 from jaart.core.scene import Array
 from jaart.core.tiles import Pixels, columns_for
-from jaart.core.tracers import NO_LOG, all_of
+from jaart.core.tracers import NO_BEGINS, NO_BLOCKS, NO_LOG, all_of
 
 Ints = NDArray[np.int64]
 
@@ -87,7 +88,7 @@ class CloudTracer:
         return self.cloud.centres[numbers], self.cloud.radii[numbers]
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
-              any_hit: bool = False) -> int:
+              any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
         """Trace some rays, in the cloud's own coordinates, into their rows of the columns; see `Tracer`."""
         local, ways, mine = origins[pixels] - self.cloud.offset, directions[pixels], columns_for(len(pixels))
         blur = ROUNDING * float(np.abs(self.cloud.offset).max())
@@ -104,3 +105,7 @@ class CloudTracer:
         for name, column in out._asdict().items():
             column[pixels] = getattr(mine, name)
         return rows
+
+    def blocks(self, view: View) -> Array:
+        """Nothing is known: the tree leads rays through what is empty."""
+        return NO_BLOCKS

@@ -114,7 +114,8 @@ class Camera:
 
         numbers = np.arange(size[0] * size[1]) if pixels is None else np.asarray(pixels, dtype=np.int64)
         origins, directions = np.empty((len(numbers), 3)), np.empty((len(numbers), 3))
-        write_rays(self.view(size), numbers, np.arange(len(numbers)), origins, directions)
+        write_rays(self.view(size), numbers, np.arange(len(numbers)), origins, directions,
+                   np.empty((0, 0)), np.empty(0))
         return origins, directions
 
     def replace(self, **values: object) -> Camera:

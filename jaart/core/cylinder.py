@@ -18,7 +18,7 @@ from jaart.core.places import Pool
 from jaart.core.scene import Array
 from jaart.core.surfels import Surfels
 from jaart.core.tiles import Pixels, columns_for
-from jaart.core.tracers import NO_LOG, OnLattice, all_of
+from jaart.core.tracers import NO_BEGINS, NO_LOG, OnLattice, all_of
 
 #: Room for rounding in a neighbourhood's radius, in cells.
 _ROUNDING = 1e-6
@@ -35,7 +35,7 @@ class CylinderTracer(OnLattice):
     radius: float
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
-              any_hit: bool = False) -> int:
+              any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
         """Trace some rays into their rows of the columns; see `Tracer`. The first hit costs no more than any."""
         def rest(sites: Sites, pool: Pool, rays: Pixels) -> tuple[int, int]:
             done, written = cylinder.cylinder_rays(self.cells._replace(sites=sites), self.radius, origins, directions,

@@ -19,7 +19,7 @@ from jaart.core.meshes import energy_mesh, level_mesh
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
 from jaart.core.tiles import Pixels, columns_for
-from jaart.core.tracers import NO_LOG, OnLattice
+from jaart.core.tracers import NO_BEGINS, NO_LOG, OnLattice
 from jaart.core.tree import box_tree
 
 #: A hit on the edge of a triangle may be rounded out of its box: boxes are larger by this, in cells.
@@ -37,7 +37,7 @@ class MeshTracer(OnLattice):
     faces: Faces
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
-              any_hit: bool = False) -> int:
+              any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
         """Trace some rays into their rows of the columns, see `Tracer`: no steps; cells: nodes of the tree visited."""
         kernels.trace_rays(self.faces, int(any_hit), origins, directions, pixels, out)
         return 0

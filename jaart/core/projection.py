@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Literal
 
@@ -33,7 +34,7 @@ class Plane:
     v: Array
     through: Literal["barycentre", "normal", "up"] = "barycentre"
 
-    @property
+    @functools.cached_property
     def normal(self) -> Array:
         """Unit normal u × v of the plane."""
         return np.cross(self.u, self.v)

@@ -62,7 +62,8 @@ class Hits:
     @property
     def hit(self) -> NDArray[np.bool_]:
         """Whether each ray met the surface (converged, or stopped at the precision floor)."""
-        return np.isin(self.status, (STATUS["converged"], STATUS["floor"]))
+        found: NDArray[np.bool_] = (self.status == STATUS["converged"]) | (self.status == STATUS["floor"])
+        return found
 
     @property
     def from_behind(self) -> NDArray[np.bool_]:

@@ -6,10 +6,12 @@ import os
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from threading import Event
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from jaart.core import extents, memory, prepare
 from jaart.core.camera import Camera, check_size
@@ -20,11 +22,14 @@ from jaart.core.prepare import Prepared
 from jaart.core.records import Array, Hits
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings, preset
-from jaart.core.tiles import Pixels, coarse_passes, columns_for, tiles
+from jaart.core.tiles import STEPS, Pixels, columns_for, in_blocks, pixels_at, tiles
+from jaart.core.tracers import NO_BEGINS, NO_BLOCKS
 from jaart.core.warm import warm_up
 
 #: What one ray and its hit take.
 _BYTES_A_RAY = 6 * 8 + 9 * 8 + 4 * 4 + 1
+#: A picture that is done sooner than this [s] shows nothing between its first coarse one and itself.
+PATIENCE = 0.15
 
 Size = tuple[int, int]
 
@@ -39,25 +44,23 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
     height); rays: origins and directions (R, 3) in cells or cloud units instead of a camera, directions of any
     length; threads: as many as the machine has when None;
     progress(done, all rays) is called from the caller's thread; cancel: set it to stop;
-    picture: called with coarse pictures, every 8th, 4th and 2nd pixel, while the work goes on; any_hit: one that
-    is found sooner will do for the first, as shadows need.
+    picture: called with coarse pictures while the work goes on: every 8th pixel, then every 4th and 2nd where the
+    rest takes long; any_hit: one that is found sooner will do for the first, as shadows need.
     Raises RayError for a picture or rays that cannot be, Cancelled after cancel was set.
     """
     settings = settings or preset("best")
     job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays, any_hit)
     warm_up(scene, settings)
     ready = prepare.prepared(scene, settings, cancel)
-    begin = time.perf_counter()
-    out = columns_for(job.count)
-    passes = coarse_passes(job.size) if picture and job.size else [(1, np.arange(job.count))]
-    done = 0
-    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
-        for step, pixels in passes:
-            _trace_all(pool, ready, job, pixels, out, _Watch(progress, cancel, done, job.count))
-            done += len(pixels)
-            if picture and step > 1:
-                picture(_every(step, job, out, settings, ready.seconds, time.perf_counter() - begin))
-    return _every(1, job, out, settings, ready.seconds, time.perf_counter() - begin)
+    count, begin = threads or os.cpu_count() or 1, time.perf_counter()
+    with ThreadPoolExecutor(count) as pool:
+        watch = _Watch(progress, cancel, job.count)
+        run = _Run(pool, count, ready, job.beginning(ready), settings, watch, begin)
+        if picture and job.size:
+            return _refined(run, job.size, picture)
+        out = columns_for(job.count)
+        run.trace(run.job, in_blocks(job.size, 1) if job.size else np.arange(job.count), out)
+        return run.hits(run.job, out, job.size)
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,8 @@ class _Job:
     """The rays to trace: those of a camera, written tile by tile, or a list.
 
     origins, directions: (R, 3); view: the camera as the kernels take it, None for a list; any_hit: not only the
-    first hit will do.
+    first hit will do; pixels: (R,) of the picture, None for all of them in order; blocks: t before which blocks of
+    pixels meet nothing, begins: (R,) that of each ray, or both without entries.
     """
 
     origins: Array
@@ -74,27 +78,41 @@ class _Job:
     size: Size | None = None
     view: View | None = None
     any_hit: bool = False
+    pixels: Pixels | None = None
+    blocks: Array = field(default_factory=lambda: NO_BLOCKS)
+    begins: Array = field(default_factory=lambda: NO_BEGINS)
 
     @property
     def count(self) -> int:
         """How many rays there are."""
         return len(self.origins)
 
-    def trace(self, ready: Prepared, pixels: Pixels, out: Out) -> None:
+    def trace(self, ready: Prepared, rows: Pixels, out: Out) -> None:
         """Trace some of the rays into their rows of the columns."""
         if self.view is not None:
-            write_rays(self.view, pixels, pixels, self.origins, self.directions)
-        ready.tracer.trace(self.origins, self.directions, pixels, out, any_hit=self.any_hit)
+            pixels = rows if self.pixels is None else self.pixels[rows]
+            write_rays(self.view, pixels, rows, self.origins, self.directions, self.blocks, self.begins)
+        ready.tracer.trace(self.origins, self.directions, rows, out, any_hit=self.any_hit, begins=self.begins)
+
+    def some(self, pixels: Pixels) -> _Job:
+        """The rays of some pixels, in rows of their own."""
+        few = np.empty((len(pixels), 3)), np.empty((len(pixels), 3))
+        return replace(self, origins=few[0], directions=few[1], pixels=pixels, begins=self.begins[:len(pixels)].copy())
+
+    def beginning(self, ready: Prepared) -> _Job:
+        """This job with what is known of where the rays of a picture can meet anything."""
+        blocks = NO_BLOCKS if self.view is None else ready.tracer.blocks(self.view)
+        return replace(self, blocks=blocks, begins=np.empty(self.count if blocks.size else 0))
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Watch:
-    """Who is told how far the work is, and who may stop it."""
+    """Who is told how far the work is, and who may stop it; done: rays traced so far."""
 
     progress: Callable[[int, int], None] | None
     cancel: Event | None
-    before: int
     total: int
+    done: int = 0
 
     def stopped(self) -> bool:
         """Whether the work is to stop."""
@@ -128,45 +146,87 @@ def unit(directions: Array) -> Array:
     return np.where(already, directions, scaled)
 
 
-def _trace_all(pool: ThreadPoolExecutor, ready: Prepared, job: _Job, pixels: Pixels, out: Out,
-               watch: _Watch) -> None:
-    """Trace some of the rays and wait for them."""
-    def trace_tile(tile: Pixels) -> int:
-        if watch.stopped():
-            return 0
-        job.trace(ready, tile, out)
-        return len(tile)
+@dataclass(frozen=True, eq=False)
+class _Run:
+    """A picture, or a list of rays, under way in a pool of so many threads; begin: when it began."""
 
-    tasks = [pool.submit(trace_tile, tile) for tile in tiles(pixels)]
-    try:
-        _wait(tasks, watch)
-    except BaseException:  # an interrupt must not wait for the tiles that have not begun
-        pool.shutdown(cancel_futures=True)
-        raise
+    pool: ThreadPoolExecutor
+    threads: int
+    ready: Prepared
+    job: _Job
+    settings: Settings
+    watch: _Watch
+    begin: float
+
+    @property
+    def seconds(self) -> float:
+        """Seconds since it began."""
+        return time.perf_counter() - self.begin
+
+    def trace(self, job: _Job, rows: Pixels, out: Out) -> None:
+        """Trace some of the rays and wait for them."""
+        def trace_tile(tile: Pixels) -> int:
+            if self.watch.stopped():
+                return 0
+            job.trace(self.ready, tile, out)
+            return len(tile)
+
+        tasks = [self.pool.submit(trace_tile, tile) for tile in tiles(rows, self.threads)]
+        try:
+            _wait(tasks, self.watch)
+        except BaseException:  # an interrupt must not wait for the tiles that have not begun
+            self.pool.shutdown(cancel_futures=True)
+            raise
+
+    def hits(self, job: _Job, out: Out, size: Size | None, rows: Pixels | None = None) -> Hits:
+        """The hits of a job's rays, or of some of them, as a picture of a size."""
+        columns = {"origin": job.origins, "direction": job.directions, **out._asdict()}
+        if rows is not None:
+            columns = {name: column.take(rows, axis=0) for name, column in columns.items()}
+        for column in columns.values():
+            column.flags.writeable = False
+        return Hits(**columns, settings=self.settings, camera=job.camera, size=size, prep_s=self.ready.seconds,
+                    ray_s=self.seconds)
+
+
+def _refined(run: _Run, size: Size, picture: Callable[[Hits], None]) -> Hits:
+    """A picture after coarser ones. The first is made in columns of its own: those of all rays cost more than it."""
+    pixels = pixels_at(size, STEPS[0])
+    small, few = run.job.some(pixels), columns_for(len(pixels))
+    run.trace(small, np.arange(len(pixels)), few)
+    left = run.seconds * run.job.count / len(pixels)
+    picture(run.hits(small, few, _coarse(size, STEPS[0])))
+    out = columns_for(run.job.count)
+    columns: tuple[NDArray[Any], ...] = (*out, run.job.origins, run.job.directions)
+    for column, rows in zip(columns, (*few, small.origins, small.directions), strict=True):
+        column[pixels] = rows
+    for step, before in _finer(left):
+        run.trace(run.job, in_blocks(size, step, before), out)
+        if step > 1:
+            picture(run.hits(run.job, out, _coarse(size, step), pixels_at(size, step)))
+    return run.hits(run.job, out, size)
+
+
+def _finer(seconds: float) -> list[tuple[int, int]]:
+    """Steps of the passes after the first, each with the one before; the last alone where they take no longer."""
+    steps = STEPS if seconds > PATIENCE else (STEPS[0], STEPS[-1])
+    return list(zip(steps[1:], steps, strict=False))
+
+
+def _coarse(size: Size, step: int) -> Size:
+    """The size of a picture of every so many pixels."""
+    return -(-size[0] // step), -(-size[1] // step)
 
 
 def _wait(tasks: list[Future[int]], watch: _Watch) -> None:
     """Wait for tiles, telling how far they are. Raises Cancelled when they were stopped."""
-    done, told = watch.before, time.perf_counter()
+    told = time.perf_counter()
     for task in tasks:
-        done += task.result()
+        watch.done += task.result()
         if watch.progress and time.perf_counter() - told > 0.1:
             told = time.perf_counter()
-            watch.progress(done, watch.total)
+            watch.progress(watch.done, watch.total)
     if watch.stopped():
         raise Cancelled("the picture was cancelled")
     if watch.progress:
-        watch.progress(done, watch.total)
-
-
-def _every(step: int, job: _Job, out: Out, settings: Settings, prep_s: float, ray_s: float) -> Hits:
-    """The hits of every so many pixels, as a smaller picture."""
-    columns = {"origin": job.origins, "direction": job.directions, **out._asdict()}
-    size = job.size
-    if step > 1 and size is not None:
-        pixels = np.arange(job.count).reshape(size[1], size[0])[::step, ::step].ravel()
-        columns = {name: column[pixels] for name, column in columns.items()}
-        size = (-(-size[0] // step), -(-size[1] // step))
-    for column in columns.values():
-        column.flags.writeable = False
-    return Hits(**columns, settings=settings, camera=job.camera, size=size, prep_s=prep_s, ray_s=ray_s)
+        watch.progress(watch.done, watch.total)

@@ -2,46 +2,57 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core.kernels.pinhole import EDGE
 from jaart.core.kernels.records import Out
 
 #: Rays in a tile: long enough to hide the cost of a task, short enough to stop soon.
 TILE = 4096
+#: Few rays are shared evenly too: so many tiles for each thread, of no fewer rays than that.
+PIECES, LEAST = 4, 128
 #: Every so many pixels in each direction are traced by one pass after the other.
 STEPS = (8, 4, 2, 1)
 
 Pixels = NDArray[np.int64]
 
 
-def coarse_passes(size: tuple[int, int]) -> list[tuple[int, Pixels]]:
-    """(step, pixels) of each pass: those at multiples of step that no earlier pass has.
+def pixels_at(size: tuple[int, int], step: int, before: int = 0) -> Pixels:
+    """The pixels at multiples of step, without those at multiples of the step of the pass before (0: of none).
 
     size: (width, height); pixels: numbers x + y·width.
     """
-    width, height = size
-    x, y = np.arange(width), np.arange(height)[:, None]
-    passes = []
-    for step, before in zip(STEPS, (0, *STEPS), strict=False):
-        wanted = (x % step == 0) & (y % step == 0)
-        if before:
-            wanted &= (x % before != 0) | (y % before != 0)
-        passes.append((step, np.flatnonzero(wanted)))
-    return [(step, pixels) for step, pixels in passes if len(pixels)]
+    wanted = np.zeros((size[1], size[0]), bool)
+    wanted[::step, ::step] = True
+    if before:
+        wanted[::before, ::before] = False
+    return np.flatnonzero(wanted)
 
 
-def tiles(pixels: Pixels) -> list[Pixels]:
-    """The pixels in pieces of at most TILE."""
-    return [pixels[i:i + TILE] for i in range(0, len(pixels), TILE)]
+@functools.lru_cache(maxsize=4)
+def in_blocks(size: tuple[int, int], step: int, before: int = 0) -> Pixels:
+    """The same pixels block by block, so that rays that are traced one after the other are neighbours."""
+    pixels, edge = pixels_at(size, step, before), EDGE * step
+    blocks = pixels // size[0] // edge * (size[0] // edge + 1) + pixels % size[0] // edge
+    pixels = pixels[np.argsort(blocks, kind="stable")]
+    pixels.flags.writeable = False
+    return pixels
+
+
+def tiles(pixels: Pixels, threads: int = 1) -> list[Pixels]:
+    """The pixels in pieces of at most TILE, some for each thread."""
+    length = max(LEAST, min(TILE, -(-len(pixels) // (PIECES * threads))))
+    return [pixels[i:i + length] for i in range(0, len(pixels), length)]
 
 
 def columns_for(count: int) -> Out:
-    """Empty columns for so many rays."""
+    """Columns for so many rays, each row of which is written when its ray has ended."""
     def numbers() -> NDArray[np.int32]:
-        return np.zeros(count, np.int32)
+        return np.empty(count, np.int32)
 
-    return Out(t=np.full(count, np.nan), point=np.full((count, 3), np.nan), normal=np.full((count, 3), np.nan),
-               energy=np.full(count, np.nan), off_centre=np.full(count, np.nan), iterations=numbers(),
-               evaluations=numbers(), neighbours=numbers(), cells=numbers(),
-               lowered=numbers(), gap=np.full(count, np.nan), status=np.zeros(count, np.uint8))
+    return Out(t=np.empty(count), point=np.empty((count, 3)), normal=np.empty((count, 3)), energy=np.empty(count),
+               off_centre=np.empty(count), iterations=numbers(), evaluations=numbers(), neighbours=numbers(),
+               cells=numbers(), lowered=numbers(), gap=np.empty(count), status=np.empty(count, np.uint8))

@@ -8,7 +8,9 @@ from typing import Protocol
 
 import numpy as np
 
-from jaart.core.kernels import ray
+from jaart.core.kernels import beams, ray
+from jaart.core.kernels.packet import ROOM
+from jaart.core.kernels.pinhole import EDGE, View
 from jaart.core.kernels.records import LOG_WIDTH, Cells, Out, Plan, Sites
 from jaart.core.places import Pool, served
 from jaart.core.scene import Array
@@ -16,6 +18,8 @@ from jaart.core.tiles import Pixels
 
 #: A log without room: nothing is written down.
 NO_LOG = np.empty((0, LOG_WIDTH))
+#: Nothing is known of where rays can meet anything.
+NO_BLOCKS, NO_BEGINS = np.empty((0, 0)), np.empty(0)
 
 
 class Tracer(Protocol):
@@ -34,11 +38,15 @@ class Tracer(Protocol):
         """Origin (3,) of the frame that places are in."""
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
-              any_hit: bool = False) -> int:
+              any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
         """Trace some rays (R, 3) into their rows of the columns; returns the rows written to the log.
 
-        log: (L, LOG_WIDTH) for the steps of a single ray; any_hit: any hit will do, not only the first.
+        log: (L, LOG_WIDTH) for the steps of a single ray; any_hit: any hit will do, not only the first; begins: (R,)
+        t before which a ray meets nothing, (0,) where nobody knows.
         """
+
+    def blocks(self, view: View) -> Array:
+        """The t before which blocks of a picture's rays meet nothing (blocks down, blocks across), or (0, 0)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,19 +69,34 @@ class OnLattice:
         """A lattice is computed in its own frame."""
         return np.zeros(3)
 
+    def blocks(self, view: View) -> Array:
+        """Nothing is known but where a search goes cell by cell."""
+        return NO_BLOCKS
+
 
 class LatticeTracer(OnLattice):
     """A lattice of surfels whose surface each ray searches."""
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
-              any_hit: bool = False) -> int:
+              any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
         """Trace some rays into their rows of the columns; see `Tracer`."""
+        packet = np.empty(ROOM)
+
         def rest(sites: Sites, pool: Pool, rays: Pixels) -> tuple[int, int]:
-            done, written = ray.trace_rays(self.cells._replace(sites=sites), self.plan, origins, directions, rays, out,
-                                           log, pool.work, pool.fit)
+            done, written = ray.trace_rays(self.cells._replace(sites=sites), self.plan, origins, directions, begins,
+                                           rays, out, log, packet, pool.work, pool.fit)
             return done, written
 
         return all_of(self.sites, pixels, rest)
+
+    def blocks(self, view: View) -> Array:
+        """The t before which no ray of a block comes near a surfel; not for even steps, which count from the border."""
+        if self.cells.uniform > 0.0:
+            return NO_BLOCKS
+        near = max(self.cells.halo, 1) if self.cells.stretches == 1 else 1
+        blocks = np.empty((-(-view.height // EDGE), -(-view.width // EDGE)))
+        beams.write_blocks(view, self.cells.empty, near, 0, len(blocks), blocks)
+        return blocks
 
 
 def all_of(sites: Sites, pixels: Pixels, rest: Callable[[Sites, Pool, Pixels], tuple[int, int]]) -> int:

@@ -19,7 +19,7 @@ from jaart.core.chosen import Chosen, chosen
 from jaart.core.cloud_surfels import cloud_of
 from jaart.core.errors import SettingsError
 from jaart.core.groups.surface import MESHES
-from jaart.core.kernels import ball_ray, energies, pinhole, ray, traversal
+from jaart.core.kernels import ball_ray, beams, energies, pinhole, ray, traversal
 from jaart.core.kernels.records import LOG_WIDTH, Cells, Plan
 from jaart.core.parameter import Length
 from jaart.core.places import neighbours_of, served
@@ -31,6 +31,7 @@ from jaart.core.tracers import LatticeTracer
 
 _LOCK = threading.RLock()
 _O, _D = (1.5, 1.5, 9.0), (0.0, 0.0, -1.0)
+_VIEW = pinhole.View(_O, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), _D, 1.0, 0, 1, 1)
 
 
 def needs_compile(scene: Scene, settings: Settings) -> bool:
@@ -68,8 +69,8 @@ def warm_up(scene: Scene, settings: Settings, tracing: bool = False) -> Chosen:
 
 @functools.cache
 def _camera() -> None:
-    view = pinhole.View(_O, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), _D, 1.0, 0, 1, 1)
-    pinhole.write_rays(view, np.zeros(1, np.int64), np.zeros(1, np.int64), np.array([_O]), np.array([_D]))
+    pinhole.write_rays(_VIEW, np.zeros(1, np.int64), np.zeros(1, np.int64), np.array([_O]), np.array([_D]),
+                       np.empty((0, 0)), np.empty(0))
 
 
 @functools.cache
@@ -83,8 +84,10 @@ def _small() -> tuple[Cells, Plan]:
 
 @functools.cache
 def _lattice() -> None:
-    LatticeTracer(*_small()).trace(np.array([_O]), np.array([_D]), np.zeros(1, np.int64), columns_for(1),
-                                   np.empty((2, LOG_WIDTH)))
+    cells, plan = _small()
+    beams.write_blocks(_VIEW, cells.empty, 1, 0, 1, np.empty((1, 1)))
+    LatticeTracer(cells, plan).trace(np.array([_O]), np.array([_D]), np.zeros(1, np.int64), columns_for(1),
+                                     np.empty((2, LOG_WIDTH)))
 
 
 @functools.cache

@@ -17,7 +17,7 @@ from jaart.core.render import render
 from jaart.core.scene import Model, Scene, frozen
 from jaart.core.settings import Settings
 from jaart.core.shapes import Box
-from jaart.core.tiles import coarse_passes
+from jaart.core.tiles import LEAST, STEPS, TILE, in_blocks, pixels_at, tiles
 
 COLUMNS = ("t", "point", "normal", "energy", "off_centre", "iterations", "evaluations", "neighbours", "cells",
            "status")
@@ -37,7 +37,8 @@ def test_any_number_of_threads_gives_the_same_bits(standard: Scene, threads: int
     assert same(render(standard, size=(97, 61), threads=1), render(standard, size=(97, 61), threads=threads))
 
 
-def test_coarse_pictures_are_parts_of_the_full_one(standard: Scene) -> None:
+def test_coarse_pictures_are_parts_of_the_full_one(standard: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("jaart.core.render.PATIENCE", 0.0)
     coarse: list[Hits] = []
     full = render(standard, size=(50, 35), picture=coarse.append)
     assert [c.size for c in coarse] == [(7, 5), (13, 9), (25, 18)]
@@ -48,10 +49,32 @@ def test_coarse_pictures_are_parts_of_the_full_one(standard: Scene) -> None:
             assert np.array_equal(getattr(picture, name), getattr(full, name)[pixels], equal_nan=name != "status")
 
 
+def test_a_quick_picture_shows_one_coarse_one(standard: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("jaart.core.render.PATIENCE", 1e9)
+    coarse: list[Hits] = []
+    full = render(standard, size=(50, 35), picture=coarse.append)
+    assert [c.size for c in coarse] == [(7, 5)]
+    assert same(full, render(standard, size=(50, 35)))
+
+
+@pytest.mark.parametrize(("rays", "threads"), [(0, 2), (1, 2), (900, 2), (4096, 2), (262_144, 2), (5000, 7)])
+def test_tiles_hold_every_ray_once_and_some_are_there_for_each_thread(rays: int, threads: int) -> None:
+    made = tiles(np.arange(rays), threads)
+    assert np.array_equal(np.concatenate([np.arange(0), *made]), np.arange(rays))
+    assert all(len(tile) <= TILE for tile in made)
+    assert len(made) >= threads or rays < threads * LEAST
+
+
 @pytest.mark.parametrize("size", [(1, 1), (8, 8), (9, 17), (3, 40)])
 def test_passes_hold_every_pixel_once(size: tuple[int, int]) -> None:
-    pixels = np.concatenate([pixels for _, pixels in coarse_passes(size)])
-    assert np.array_equal(np.sort(pixels), np.arange(size[0] * size[1]))
+    for order in (pixels_at, in_blocks):
+        pixels = np.concatenate([order(size, step, before) for step, before in zip(STEPS, (0, *STEPS), strict=False)])
+        assert np.array_equal(np.sort(pixels), np.arange(size[0] * size[1]))
+
+
+def test_pixels_that_are_traced_together_are_a_block() -> None:
+    x, y = in_blocks((24, 20), 1)[64:128] % 24, in_blocks((24, 20), 1)[64:128] // 24
+    assert sorted(zip(x.tolist(), y.tolist(), strict=True)) == [(i, j) for i in range(8, 16) for j in range(8)]
 
 
 def test_a_list_of_rays_gives_the_hits_of_the_picture(standard: Scene) -> None:

@@ -23,7 +23,8 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.leaving import Leave, counting, leave
 from jaart.core.kernels.log import end_log
 from jaart.core.kernels.near import near_in, surfels_near
-from jaart.core.kernels.ray import added, is_bad, no_hit, visiting, write_end
+from jaart.core.kernels.packet import is_bad
+from jaart.core.kernels.ray import added, no_hit, visiting, write_end
 from jaart.core.kernels.records import Array, Out, Plan, RayEnd, Sites, Start, Vector
 from jaart.core.kernels.stretch import has_hit
 from jaart.core.kernels.tree import Tree, span

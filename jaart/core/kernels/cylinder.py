@@ -18,8 +18,9 @@ from jaart.core.kernels import records as r
 from jaart.core.kernels.blocks import is_short
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import normal, point, surfels_near
+from jaart.core.kernels.packet import is_bad
 from jaart.core.kernels.place import centre_of, in_scene
-from jaart.core.kernels.ray import is_bad, no_hit, write_end
+from jaart.core.kernels.ray import no_hit, write_end
 from jaart.core.kernels.records import Array, Cell, Cells, Near, Out, RayEnd, Sites, Vector
 from jaart.core.kernels.traversal import advance, axes_of, cell_at, clip, inside
 from jaart.core.kernels.unowned import unowned, unowned_cells

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.jit import EXACT, STRICT, kernel
-from jaart.core.kernels.ray import is_bad, no_hit, write_end
+from jaart.core.kernels.packet import is_bad
+from jaart.core.kernels.ray import no_hit, write_end
 from jaart.core.kernels.records import Array, Out, RayEnd, Vector
 from jaart.core.kernels.tree import DEEPEST, Tree, span
 from jaart.core.kernels.unowned import unowned

@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.records import Array, Vector
+from jaart.core.kernels.vectors import along, scaled
+
+#: A block of pixels has so many along each edge.
+EDGE = 8
 
 
 class View(NamedTuple):
@@ -29,19 +33,30 @@ class View(NamedTuple):
     height: int
 
 
+@kernel(STRICT, inline=True)
+def ray_at(view: View, x: float, y: float) -> tuple[Vector, Vector]:
+    """Origin and unit direction of the ray through a place of the picture, in pixels from its upper left corner."""
+    across, up = (x - 0.5 * view.width) * view.pixel, (0.5 * view.height - y) * view.pixel
+    aside = (across * view.right[0] + up * view.up[0], across * view.right[1] + up * view.up[1],
+             across * view.right[2] + up * view.up[2])
+    if view.parallel:
+        return along(view.eye, aside, 1.0), view.forward
+    return view.eye, scaled(along(view.forward, aside, 1.0), 1.0 / sqrt(1.0 + across * across + up * up))
+
+
 @kernel(STRICT, entry=True)
-def write_rays(view: View, pixels: NDArray[np.int64], rows: NDArray[np.int64], origins: Array,
-               directions: Array) -> None:
+def write_rays(view: View, pixels: NDArray[np.int64], rows: NDArray[np.int64], origins: Array, directions: Array,
+               blocks: Array, begins: Array) -> None:
     """Write origin and unit direction of the ray through each pixel into a row of (R, 3).
 
-    pixels: numbers x + y·width counted row by row from the top; rows: one for each.
+    pixels: numbers x + y·width counted row by row from the top; rows: one for each; blocks: t before which no ray of a
+    block of EDGE × EDGE pixels can meet anything (beams.empty_until), or (0, 0); begins: (R,) gets that of its block.
     """
     for i in range(pixels.shape[0]):
         number, row = pixels[i], rows[i]
-        x = (number % view.width + 0.5 - 0.5 * view.width) * view.pixel
-        y = (0.5 * view.height - number // view.width - 0.5) * view.pixel
-        per_length = 1.0 if view.parallel else 1.0 / sqrt(1.0 + x * x + y * y)
+        x, y = number % view.width, number // view.width
+        o, d = ray_at(view, x + 0.5, y + 0.5)
         for axis in range(3):
-            aside = x * view.right[axis] + y * view.up[axis]
-            origins[row, axis] = view.eye[axis] + (aside if view.parallel else 0.0)
-            directions[row, axis] = (view.forward[axis] + (0.0 if view.parallel else aside)) * per_length
+            origins[row, axis], directions[row, axis] = o[axis], d[axis]
+        if blocks.size > 0:
+            begins[row] = blocks[y // EDGE, x // EDGE]

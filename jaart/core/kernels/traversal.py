@@ -16,52 +16,57 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.records import Array, Cell, Vector
 
 #: A smaller component of a unit direction moves nothing within a lattice.
-_STILL = 1e-290
+STILL = 1e-290
 
 
 class Axis(NamedTuple):
-    """A ray along one axis, x = o + t·d: per_d = 1/d; way is 1, -1, or 0 for no motion; n cells."""
+    """A ray along one axis, x = o + t·d: per_d = 1/d; way is 1, -1, or 0 for no motion.
+
+    ahead: 1 where the face that a cell is left through is its upper one, else 0; last: the last cell's index. Indices
+    are whole floats here: they are only ever compared with t's.
+    """
 
     o: float
     d: float
     per_d: float
-    way: int
-    n: int
+    way: float
+    ahead: float
+    last: float
 
 
 Axes = tuple[Axis, Axis, Axis]
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def axis_of(o: float, d: float, n: int) -> Axis:
     """One axis of a ray with an origin and a unit direction."""
-    if abs(d) <= _STILL:
-        return Axis(o, 0.0, inf, 0, n)
-    return Axis(o, d, 1.0 / d, 1 if d > 0.0 else -1, n)
+    if abs(d) <= STILL:
+        return Axis(o, 0.0, inf, 0.0, 0.0, n - 1.0)
+    return Axis(o, d, 1.0 / d, 1.0 if d > 0.0 else -1.0, 1.0 if d > 0.0 else 0.0, n - 1.0)
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def axes_of(o: Vector, d: Vector, shape: Cell) -> Axes:
     """The three axes of a ray through a lattice."""
     return axis_of(o[0], d[0], shape[0]), axis_of(o[1], d[1], shape[1]), axis_of(o[2], d[2], shape[2])
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def plane_t(axis: Axis, plane: float) -> float:
     """The t at which a ray passes a plane of an axis that it moves along."""
     return (plane - axis.o) * axis.per_d
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def slab(axis: Axis) -> tuple[float, float]:
     """Where a ray enters and leaves 0 <= x <= n along one axis; (inf, -inf) when it never does."""
-    if axis.way == 0:
-        return (-inf, inf) if 0.0 <= axis.o <= axis.n else (inf, -inf)
-    a, b = plane_t(axis, 0.0), plane_t(axis, float(axis.n))
-    return (a, b) if axis.way > 0 else (b, a)
+    if axis.way == 0.0:
+        return (-inf, inf) if 0.0 <= axis.o <= axis.last + 1.0 else (inf, -inf)
+    a, b = plane_t(axis, 0.0), plane_t(axis, axis.last + 1.0)
+    return (a, b) if axis.way > 0.0 else (b, a)
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def clip(axes: Axes) -> tuple[float, float]:
     """Where a ray enters and leaves the lattice, from its origin on; enters > leaves: never."""
     ax, bx = slab(axes[0])
@@ -70,59 +75,78 @@ def clip(axes: Axes) -> tuple[float, float]:
     return max(max(ax, ay), max(az, 0.0)), min(bx, min(by, bz))
 
 
-@kernel(STRICT)
-def index_at(axis: Axis, t: float) -> int:
+@kernel(STRICT, inline=True)
+def index_at(axis: Axis, t: float) -> float:
     """Index of the cell along an axis at t; on a face it is the cell that the ray runs into.
 
     The rounded guess is put right by the same t of planes that stepping uses.
     """
-    i = int(floor(min(max(axis.o + t * axis.d, 0.0), axis.n - 1.0)))
-    if axis.way > 0:
-        while i < axis.n - 1 and plane_t(axis, i + 1.0) <= t:
-            i += 1
-        while i > 0 and plane_t(axis, float(i)) > t:
-            i -= 1
-    elif axis.way < 0:
-        while i > 0 and plane_t(axis, float(i)) <= t:
-            i -= 1
-        while i < axis.n - 1 and plane_t(axis, i + 1.0) > t:
-            i += 1
+    i: float = np.floor(min(max(axis.o + t * axis.d, 0.0), axis.last))
+    if axis.way != 0.0:
+        end = axis.ahead * axis.last
+        while i != end and plane_t(axis, i + axis.ahead) <= t:
+            i += axis.way
+        while i != axis.last - end and plane_t(axis, i + 1.0 - axis.ahead) > t:
+            i -= axis.way
     return i
+
+
+@kernel(STRICT, inline=True)
+def spot_at(axes: Axes, t: float) -> Vector:
+    """The cell, its indices as floats, that a ray runs into at t."""
+    return index_at(axes[0], t), index_at(axes[1], t), index_at(axes[2], t)
+
+
+@kernel(STRICT, inline=True)
+def whole(spot: Vector) -> Cell:
+    """A cell from its indices as floats."""
+    return int(spot[0]), int(spot[1]), int(spot[2])
 
 
 @kernel(STRICT)
 def cell_at(axes: Axes, t: float) -> Cell:
     """The cell that a ray runs into at t."""
-    return index_at(axes[0], t), index_at(axes[1], t), index_at(axes[2], t)
+    return whole(spot_at(axes, t))
 
 
-@kernel(STRICT)
-def exit_t(axis: Axis, i: int, reach: int) -> float:
+@kernel(STRICT, inline=True)
+def exit_t(axis: Axis, i: float, reach: float) -> float:
     """The t at which a ray leaves the cells i - reach … i + reach of an axis."""
-    if axis.way == 0:
-        return inf
-    return plane_t(axis, i + reach + 1.0 if axis.way > 0 else float(i - reach))
+    return inf if axis.way == 0.0 else plane_t(axis, i + axis.way * reach + axis.ahead)
 
 
-@kernel(STRICT)
-def index_after(axis: Axis, i: int, reach: int, own: float, t: float) -> int:
+@kernel(STRICT, inline=True)
+def index_after(axis: Axis, i: float, reach: float, own: float, t: float) -> float:
     """The index after leaving a block at t: over the far face where own == t, else where the ray is."""
     if own == t:
-        return i + axis.way * (reach + 1)
-    return i if reach == 0 or axis.way == 0 else index_at(axis, t)
+        return i + axis.way * (reach + 1.0)
+    return i if reach == 0.0 else index_at(axis, t)
 
 
-@kernel(STRICT)
-def advance(axes: Axes, cell: Cell, reach: int) -> tuple[float, Cell]:
-    """(t, next cell) where a ray leaves the block of cells within reach of a cell.
+@kernel(STRICT, inline=True)
+def onward(axes: Axes, spot: Vector, reach: float) -> tuple[float, Vector]:
+    """(t, next cell) where a ray leaves the block of cells within reach of a cell; indices as floats.
 
     Through an edge or a corner two or three indices change at once. The next cell may lie outside.
     """
-    i, j, k = cell
+    i, j, k = spot
     tx, ty, tz = exit_t(axes[0], i, reach), exit_t(axes[1], j, reach), exit_t(axes[2], k, reach)
     t = min(tx, min(ty, tz))
     return t, (index_after(axes[0], i, reach, tx, t), index_after(axes[1], j, reach, ty, t),
                index_after(axes[2], k, reach, tz, t))
+
+
+@kernel(STRICT)
+def advance(axes: Axes, cell: Cell, reach: int) -> tuple[float, Cell]:
+    """(t, next cell) where a ray leaves the block of cells within reach of a cell, as `onward`."""
+    t, spot = onward(axes, (float(cell[0]), float(cell[1]), float(cell[2])), float(reach))
+    return t, whole(spot)
+
+
+@kernel(STRICT, inline=True)
+def holds(axes: Axes, spot: Vector) -> bool:
+    """Whether a cell, its indices as floats, belongs to the lattice."""
+    return (0.0 <= spot[0] <= axes[0].last and 0.0 <= spot[1] <= axes[1].last and 0.0 <= spot[2] <= axes[2].last)
 
 
 @kernel(STRICT)
@@ -156,7 +180,7 @@ def crossed(o: Array, d: Array, shape: Cell, cells: NDArray[np.int32], borders: 
 @kernel(STRICT)
 def face_below(axis: Axis) -> int:
     """1 when a ray runs within the face between a cell and the one below it, else 0."""
-    return 1 if axis.way == 0 and 0.0 < axis.o < axis.n and axis.o == floor(axis.o) else 0
+    return 1 if axis.way == 0.0 and 0.0 < axis.o <= axis.last and axis.o == floor(axis.o) else 0
 
 
 @kernel(STRICT)

@@ -1,0 +1,189 @@
+"""Rays that walk through the cells together, up to the first cell that a search begins in.
+
+Rays beside one another cross nearly the same cells. Side by side in columns of `LANES` their steps are done as vectors;
+each is the step of traversal.onward, number for number, so that a ray's t does not hang on its company.
+"""
+
+from __future__ import annotations
+
+from math import inf, isfinite, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.records import Array, Cell, Unsigned, Vector
+from jaart.core.kernels.traversal import STILL, Axes, Axis
+
+#: Rays of a packet: a block of 8 × 8 pixels.
+LANES: Unsigned = np.uint64(64)
+#: Columns of a packet: what traversal.Axis says of each of three axes, then index, t and the rest.
+_COLUMN = [np.uint64(64 * i) for i in range(25)]
+ORIGIN, DIRECTION, PER_D, WAY, AHEAD, AT = _COLUMN[0], _COLUMN[3], _COLUMN[6], _COLUMN[9], _COLUMN[12], _COLUMN[15]
+T, LEAVE, ENTER, STATE, VISITED, AWAY, BAD = (_COLUMN[18], _COLUMN[19], _COLUMN[20], _COLUMN[21], _COLUMN[22],
+                                                     _COLUMN[23], _COLUMN[24])
+#: Floats that a packet takes.
+ROOM = 64 * 25
+#: Added to the first column of three, the columns of the axes.
+X, Y, Z = _COLUMN[0], _COLUMN[1], _COLUMN[2]
+#: A ray walks, has found a cell to search in, or has left the lattice.
+WALKING, FOUND, LEFT = 0.0, 1.0, 2.0
+#: From farther away one unit in the last place of the origin is wider than a cell.
+_FAR = 1e15
+#: So few rays go on alone.
+FEW = 4
+
+
+@kernel(STRICT, inline=True)
+def is_bad(o: Vector, d: Vector) -> bool:
+    """Whether a ray has no meaning: not finite, no unit direction, or an origin beyond all precision."""
+    for axis in range(3):
+        if not (isfinite(d[axis]) and abs(o[axis]) < _FAR):
+            return True
+    return abs(sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) - 1.0) > 1e-6
+
+
+@kernel(STRICT, inline=True)
+def set_axis(p: Array, axis: Unsigned, lane: Unsigned, n: float, near: float, far: float) -> tuple[float, float]:
+    """Write what traversal.axis_of knows of an axis, and cut (near, far) to where the ray is between its faces."""
+    o, d = p[ORIGIN + axis + lane], p[DIRECTION + axis + lane]
+    still = abs(d) <= STILL
+    per_d = inf if still else 1.0 / d
+    way = 0.0 if still else (1.0 if d > 0.0 else -1.0)
+    p[DIRECTION + axis + lane] = 0.0 if still else d
+    p[PER_D + axis + lane], p[WAY + axis + lane] = per_d, way
+    p[AHEAD + axis + lane] = 1.0 if way > 0.0 else 0.0
+    a, b = (0.0 - o) * per_d, (n - o) * per_d
+    low, high = (a, b) if way > 0.0 else (b, a)
+    inside = 0.0 <= o <= n
+    low = (-inf if inside else inf) if still else low
+    high = (inf if inside else -inf) if still else high
+    return max(near, low), min(far, high)
+
+
+@kernel(STRICT, inline=True)
+def placed(p: Array, axis: Unsigned, lane: Unsigned, last: float, t: float) -> float:
+    """Index of the cell at t, as traversal.index_at; the rounded guess is off by one at most."""
+    o, per_d, way, ahead = p[ORIGIN + axis + lane], p[PER_D + axis + lane], p[WAY + axis + lane], p[AHEAD + axis + lane]
+    i = np.floor(min(max(o + t * p[DIRECTION + axis + lane], 0.0), last))
+    end = ahead * last
+    on = way != 0.0 and i != end and (i + ahead - o) * per_d <= t
+    back = way != 0.0 and i != last - end and (i + 1.0 - ahead - o) * per_d > t
+    return i + (way if on else (-way if back else 0.0))
+
+
+@kernel(STRICT, inline=True)
+def exit_at(p: Array, axis: Unsigned, lane: Unsigned, reach: float) -> float:
+    """The t at which a ray leaves the cells within reach of its own along an axis, as traversal.exit_t."""
+    way = p[WAY + axis + lane]
+    t = (p[AT + axis + lane] + way * reach + p[AHEAD + axis + lane] - p[ORIGIN + axis + lane]) * p[PER_D + axis + lane]
+    return inf if way == 0.0 else t
+
+
+@kernel(STRICT, inline=True)
+def index_after(p: Array, axis: Unsigned, lane: Unsigned, last: float, reach: float, own: float, t: float) -> float:
+    """The index after leaving a block at t, as traversal.index_after."""
+    i = p[AT + axis + lane]
+    elsewhere = i if reach == 0.0 else placed(p, axis, lane, last, t)
+    return i + p[WAY + axis + lane] * (reach + 1.0) if own == t else elsewhere
+
+
+@kernel(STRICT)
+def enter(p: Array, nx: float, ny: float, nz: float, count: Unsigned) -> None:
+    """Put rays, whose ORIGIN, DIRECTION and T are written, where they enter the lattice, or at T where it is later."""
+    for lane in range(count):
+        near, far = set_axis(p, X, lane, nx, 0.0, inf)
+        near, far = set_axis(p, Y, lane, ny, near, far)
+        near, far = set_axis(p, Z, lane, nz, near, far)
+        t = max(near, p[T + lane])
+        p[ENTER + lane], p[LEAVE + lane], p[T + lane] = near, far, t
+        p[STATE + lane], p[VISITED + lane] = (WALKING if t <= far else LEFT), 0.0
+    for lane in range(count):
+        t = p[T + lane]
+        p[AT + X + lane] = placed(p, X, lane, nx - 1.0, t)
+        p[AT + Y + lane] = placed(p, Y, lane, ny - 1.0, t)
+        p[AT + Z + lane] = placed(p, Z, lane, nz - 1.0, t)
+
+
+@kernel(STRICT)
+def look_around(p: Array, empty: NDArray[np.uint8], count: Unsigned) -> None:
+    """Write how far each ray's cell is from the nearest one with a surfel."""
+    for lane in range(count):
+        if p[STATE + lane] == WALKING:
+            i, j, k = int(p[AT + X + lane]), int(p[AT + Y + lane]), int(p[AT + Z + lane])
+            p[AWAY + lane] = float(empty[np.uint64(i), np.uint64(j), np.uint64(k)])
+
+
+@kernel(STRICT)
+def step(p: Array, nx: float, ny: float, nz: float, free: float, count: Unsigned) -> int:
+    """One step of every ray that walks; returns how many go on walking."""
+    walking = 0
+    for lane in range(count):
+        away, state = p[AWAY + lane], p[STATE + lane]
+        reach = max(away - free - 1.0, 0.0)
+        tx, ty, tz = exit_at(p, X, lane, reach), exit_at(p, Y, lane, reach), exit_at(p, Z, lane, reach)
+        t = min(tx, min(ty, tz))
+        i = index_after(p, X, lane, nx - 1.0, reach, tx, t)
+        j = index_after(p, Y, lane, ny - 1.0, reach, ty, t)
+        k = index_after(p, Z, lane, nz - 1.0, reach, tz, t)
+        inside = 0.0 <= i < nx and 0.0 <= j < ny and 0.0 <= k < nz and t <= p[LEAVE + lane]
+        walks, found = state == WALKING, away <= free
+        goes = walks and not found
+        p[VISITED + lane] += 1.0 if walks else 0.0
+        p[STATE + lane] = (FOUND if found else (WALKING if inside else LEFT)) if walks else state
+        p[T + lane] = t if goes else p[T + lane]
+        p[AT + X + lane] = i if goes else p[AT + X + lane]
+        p[AT + Y + lane] = j if goes else p[AT + Y + lane]
+        p[AT + Z + lane] = k if goes else p[AT + Z + lane]
+        walking += 1 if goes and inside else 0
+    return walking
+
+
+@kernel(STRICT, inline=True)
+def place_ray(p: Array, lane: Unsigned, o: Vector, d: Vector, t: float) -> None:
+    """Write where a ray comes from and goes, and the t before which it meets nothing.
+
+    One without meaning is put where it meets nothing at all.
+    """
+    bad = is_bad(o, d)
+    p[BAD + lane] = 1.0 if bad else 0.0
+    if bad:
+        o, d = (-1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)
+    p[ORIGIN + X + lane], p[ORIGIN + Y + lane], p[ORIGIN + Z + lane] = o
+    p[DIRECTION + X + lane], p[DIRECTION + Y + lane], p[DIRECTION + Z + lane] = d
+    p[T + lane] = t
+
+
+@kernel(STRICT, inline=True)
+def axis_in(p: Array, axis: Unsigned, lane: Unsigned, n: int) -> Axis:
+    """One axis of a ray of the packet."""
+    return Axis(p[ORIGIN + axis + lane], p[DIRECTION + axis + lane], p[PER_D + axis + lane], p[WAY + axis + lane],
+                p[AHEAD + axis + lane], n - 1.0)
+
+
+@kernel(STRICT, inline=True)
+def axes_in(p: Array, lane: Unsigned, shape: Cell) -> Axes:
+    """The three axes of a ray of the packet."""
+    return axis_in(p, X, lane, shape[0]), axis_in(p, Y, lane, shape[1]), axis_in(p, Z, lane, shape[2])
+
+
+@kernel(STRICT, inline=True)
+def spot_in(p: Array, lane: Unsigned) -> Vector:
+    """The cell that a ray of the packet has come to."""
+    return p[AT + X + lane], p[AT + Y + lane], p[AT + Z + lane]
+
+
+@kernel(STRICT)
+def walk_together(p: Array, empty: NDArray[np.uint8], free: int, even: bool, count: Unsigned) -> None:
+    """Walk until no more than a few rays are without a cell to search in.
+
+    p: (ROOM,), the rays placed; free: a search begins in cells no farther than this from one with a surfel;
+    even: steps are even, and every ray goes alone.
+    """
+    nx, ny, nz = empty.shape
+    x, y, z, none = float(nx), float(ny), float(nz), float(free)
+    enter(p, x, y, z, count)
+    walking = FEW if even else FEW + 1
+    while walking > FEW:
+        look_around(p, empty, count)
+        walking = step(p, x, y, z, none, count)

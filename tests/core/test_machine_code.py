@@ -1,0 +1,63 @@
+"""Loops over surfels and over the rays of a packet run in vectors, where the processor has them: read off its code."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import llvmlite.binding as llvm
+import numba
+import pytest
+from numba import types
+
+from jaart.core.kernels import packet, records, sums
+from jaart.core.kernels.call import EVALUATE
+
+NEAR, X, _, _, WEIGHTS, _ = EVALUATE.args
+LANES = types.uint64
+PACKET = types.Array(types.float64, 1, "C")
+LOOPS: dict[str, tuple[Any, tuple[Any, ...], int]] = {
+    "sums with the Gaussian weight": (sums.gaussian_sums, (NEAR, X, types.float64), 20),
+    "Σθ(p - x)": (sums.offset_sums, (NEAR, X, WEIGHTS), 3),
+    "Σθn": (sums.normal_sums, (NEAR, WEIGHTS), 3),
+    "covariance": (sums.covariance_sums, (NEAR, X, WEIGHTS), 6),
+    "rays that enter": (packet.enter, (PACKET, *(types.float64,) * 3, LANES), 6),
+    "rays that step": (packet.step, (PACKET, *(types.float64,) * 4, LANES), 6),
+}
+
+
+def packed() -> str:
+    """A pattern of instructions that multiply vectors of doubles on this machine; skips where none is known."""
+    features, machine = llvm.get_host_cpu_features(), llvm.get_process_triple().split("-")[0]
+    if machine in ("x86_64", "amd64") and features.get("avx2"):
+        return r"v(?:mul|fmadd\d+|fmsub\d+|fnmadd\d+|fnmsub\d+)pd\s.*%[yz]mm"
+    if machine in ("aarch64", "arm64"):
+        return r"(?:fmul|fmla|fmls)\s+v\d+\.2d"
+    pytest.skip(f"no vectors of doubles are known on {machine}")
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_loops_are_compiled_to_vectors(name: str) -> None:
+    kernel, signature, least = LOOPS[name]
+    pattern = packed()
+    fresh = numba.njit(kernel.py_func, nogil=True, fastmath=kernel.targetoptions["fastmath"], error_model="numpy",
+                       _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    fresh.compile(signature)
+    (code,) = fresh.inspect_asm().values()
+    assert len(re.findall(pattern, code)) >= least, name
+
+
+def test_a_loop_in_which_each_step_needs_the_last_is_none() -> None:
+    """What the pattern finds is not there in a loop that cannot be a vector: the check can fail."""
+    pattern = packed()
+
+    def strict(a: records.Array) -> float:
+        total = 1.0
+        for i in range(a.shape[0]):
+            total = total * a[i] + 1.0
+        return total
+
+    fresh = numba.njit(strict, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    fresh.compile((PACKET,))
+    (code,) = fresh.inspect_asm().values()
+    assert not re.findall(pattern, code)
