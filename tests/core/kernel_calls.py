@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from jaart.core.assemble import NORMALS, WEIGHTS
 from jaart.core.kernels import records as r
 from jaart.core.kernels.fitted import polynomial
-from jaart.core.kernels.records import Near, Rule, Value
+from jaart.core.kernels.jit import STRICT, kernel
+from jaart.core.kernels.near import surfels_near
+from jaart.core.kernels.records import Cell, Near, Rule, Sites, Value
 from jaart.core.kernels.tangent import tangent_covariance, tangent_surfel
 from jaart.core.kernels.weigh import weigh
 from jaart.core.places import SCRATCH_A_SURFEL
@@ -26,6 +28,21 @@ def near_of(points: Vectors, normals: Vectors | None = None) -> Near:
     ahead = [[0.0, 0.0, 1.0]] * len(points) if normals is None else normals
     columns = np.concatenate([np.array(points, float).reshape(-1, 3), np.array(ahead, float).reshape(-1, 3)], axis=1)
     return Near(np.ascontiguousarray(columns.T).ravel(), np.uint64(0), np.uint64(len(points)), np.uint64(len(points)))
+
+
+@kernel(STRICT, entry=True)
+def _copy_near(sites: Sites, cell: Cell, columns: Array) -> tuple[int, int]:
+    near = surfels_near(sites, cell)
+    for i in range(near.columns.shape[0]):
+        columns[i] = near.columns[i]
+    return int(near.size), int(near.wide)
+
+
+def near_at(sites: Sites, cell: Cell) -> Near:
+    """The surfels near a place, up to 680 of them, in columns of their own: Python cannot hold what nobody owns."""
+    columns = np.empty(6 * 680)
+    size, wide = _copy_near(sites, cell, columns)
+    return Near(columns[:6 * wide], np.uint64(0), np.uint64(size), np.uint64(wide))
 
 
 def rule_of(weight: str = "gaussian", normal: str = "surfel", h: float = 0.8, reach: float = math.inf, k: int = 0,

@@ -14,9 +14,7 @@ from jaart.core.errors import SettingsError
 from jaart.core.io import load
 from jaart.core.kernels.blocks import NOWHERE
 from jaart.core.kernels.guess import GUESS_WIDTH
-from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.near import surfels_near
-from jaart.core.kernels.records import Near, Sites
+from jaart.core.kernels.records import Sites
 from jaart.core.kernels.sums import gaussian_sums
 from jaart.core.places import Places, listed, listed_near, places_of, served
 from jaart.core.records import Hits
@@ -24,7 +22,7 @@ from jaart.core.render import render
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings, preset
 from tests.core.cloud_scenes import fresh
-from tests.core.kernel_calls import near_of
+from tests.core.kernel_calls import near_at, near_of
 
 SIZE = (40, 40)
 CASES = ["lattice best", "lattice thesis", "cloud best", "cloud thesis"]
@@ -114,16 +112,11 @@ def test_what_is_kept_is_counted(name: str) -> None:
     assert again.hit.any() and places_of(sites).kept == kept
 
 
-@kernel(STRICT, entry=True)
-def columns_of(sites: Sites, cell: tuple[int, int, int]) -> Near:
-    return surfels_near(sites, cell)
-
-
 @pytest.mark.parametrize("count", [0, 1, 7, 8, 9, 16, 17])
 def test_columns_are_filled_up_with_surfels_that_count_nothing(count: int) -> None:
     made = np.random.default_rng(count).normal(size=(6, count))
     sites = listed((0, 0, 0), np.zeros((1, 3)), np.array([0, count]), np.arange(count, dtype=np.int32), made.ravel())
-    near = served(sites, lambda own, pool: columns_of(own, (0, 0, 0)))
+    near = served(sites, lambda own, pool: near_at(own, (0, 0, 0)))
     columns = near.columns.reshape(6, -1)
     assert near.size == count and near.wide == columns.shape[1] == -(-count // 8) * 8
     assert np.array_equal(columns[:, :count], made)
