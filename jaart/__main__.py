@@ -11,9 +11,14 @@ def main(arguments: list[str] | None = None) -> int:
     arguments: without the program's name, those of the process when None. Returns the exit status:
     0 done, 1 could not be done, 2 wrong usage, 130 interrupted.
     """
-    from jaart.cli import run
+    try:
+        from jaart.cli import run
 
-    return run(sys.argv[1:] if arguments is None else arguments)
+        return run(sys.argv[1:] if arguments is None else arguments)
+    except KeyboardInterrupt:  # while the program itself was loaded
+        print("jaart: interrupted", file=sys.stderr)
+        exec("")  # see jaart.cli.run
+        return 130
 
 
 if __name__ == "__main__":

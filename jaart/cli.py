@@ -13,6 +13,7 @@ from jaart import cli_arguments as typed
 from jaart import cli_files as files
 from jaart import cli_isosurface as meshes
 from jaart import cli_plan as plans
+from jaart import cli_progress as bars
 from jaart import cli_report as report
 from jaart import cli_study as studies
 from jaart.cli_interrupt import interruptible
@@ -42,7 +43,8 @@ def run(arguments: list[str]) -> int:
     command = typer.main.get_command(app)
     try:
         words = typed.complete(arguments, getattr(command, "commands", {}))
-        status = command.main(words, prog_name="jaart", standalone_mode=False)
+        with bars.shown():
+            status = command.main(words, prog_name="jaart", standalone_mode=False)
     except JaartError as error:
         return _fail(str(error), 1)
     except _USAGE as error:
@@ -58,6 +60,7 @@ def run(arguments: list[str]) -> int:
     except MemoryError:
         return _fail("not enough memory for this scene and size", 1)
     if status == 130:  # what the parser makes of Ctrl-C as well
+        exec("")  # else an interrupt while a module was loaded ends the process by a signal when it is done
         return _fail("interrupted", 130)
     return status if isinstance(status, int) else 0
 
@@ -113,14 +116,13 @@ def info(scene: SceneName, frame: Frame = None,
 
 
 @app.command()
-def plan(scene: SceneName, preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None, frame: Frame = None,
+def plan(scene: SceneName, size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None,
+         preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None, frame: Frame = None,
          as_json: plans.AsJson = False) -> None:
-    """Say what a scene needs with these settings and what it does not, each with its reason, and what auto comes to."""
+    """Say what a picture needs with these settings and what it does not, each with its reason, and what auto is."""
+    shape = typed.size(size)
     loaded, chosen = files.open_scene(scene, frame, typed.settings(preset, set_ or []), preset, set_)
-
-    from jaart.core.plan import plan as made
-
-    print(plans.text(made(loaded, chosen), as_json))
+    print(plans.text(plans.made(loaded, chosen, camera or [], shape), as_json))
 
 
 @app.command()
@@ -171,14 +173,14 @@ def render(
 
     report.say_compiling(loaded, chosen)
     with interruptible() as cancel:
-        with report.progress_bar() as progress:
+        with bars.counted("rays") as progress:
             found = trace_rays(loaded, chosen, view, shape, rays=listed, threads=threads, progress=progress,
                                cancel=cancel)
         errors = quality(found, loaded) if loaded.model is not None or map_.endswith("_error") else None
         print(report.hits_line(found, loaded, errors))
         report.say_notes(loaded, chosen, found)
         if output is not None:
-            with report.progress_bar() as progress:
+            with bars.counted("light") as progress:
                 colours = finish(found, loaded, map_, errors, cancel=cancel, progress=progress, threads=threads)
             files.write_picture(colours, found, loaded, errors, map_, output)
     if hits is not None:
@@ -209,10 +211,12 @@ def trace(
 
     from jaart.core.chosen import chosen as values_of
     from jaart.core.trace import trace as follow
+    from jaart.core.visible import seen
 
     if at is not None:
         view = typed.camera(camera or [], loaded, chosen, shape)
         ray, up = typed.pixel_ray(view, shape, at), view.up or up
+        chosen = seen(loaded, chosen, view, shape)
     assert ray is not None
     report.say_compiling(loaded, chosen)
     followed = follow(loaded, chosen, *ray, pixel=at)
@@ -241,7 +245,7 @@ def statistics(
     from jaart.core.render import render as trace_rays
 
     report.say_compiling(loaded, chosen)
-    with interruptible() as cancel, report.progress_bar() as progress:
+    with interruptible() as cancel, bars.counted("rays") as progress:
         found = trace_rays(loaded, chosen, view, shape, threads=threads, progress=progress, cancel=cancel)
     errors = quality(found, loaded)
     print(report.hits_line(found, loaded, errors))
@@ -260,7 +264,7 @@ def isosurface(
     loaded, chosen = files.open_scene(scene, frame, chosen, preset, set_, meshes.IMPLIED)
     along = meshes.direction_of(energy, direction, camera or [], loaded, chosen)
     report.say_compiling(loaded, chosen)
-    with interruptible() as cancel, report.progress_bar("layer") as progress:
+    with interruptible() as cancel, bars.counted("layers of cells") as progress:
         meshes.write(loaded, chosen, energy, along, output, cancel, progress)
 
 
@@ -271,7 +275,7 @@ def study(name: studies.StudyName, output: studies.Folder, quick: studies.Quick 
     stability: every stiff and extreme case, with what was expected and what came of it.
     """
     studies.check(name, output)
-    with interruptible() as cancel, report.progress_bar("case") as progress:
+    with interruptible() as cancel, bars.counted("cases", alone=True) as progress:
         return studies.run_stability(output, quick, cancel, progress)
 
 

@@ -8,11 +8,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from jaart import cli_arguments as typed
+
 if TYPE_CHECKING:
     from jaart.core.plan import Plan, Value
+    from jaart.core.scene import Scene
+    from jaart.core.settings import Settings
     from jaart.core.stage import Stage
 
 AsJson = Annotated[bool, typer.Option("--json", help="The same for programs.")]
+
+
+def made(scene: Scene, settings: Settings, camera: list[str], size: tuple[int, int]) -> Plan:
+    """The plan of a picture of that size from a camera as it was typed."""
+    from jaart.core.plan import plan
+
+    return plan(scene, settings, typed.camera(camera, scene, settings, size), size)
 
 
 def text(made: Plan, as_json: bool) -> str:

@@ -1,11 +1,10 @@
-"""What the commands say: a table of a scene, a line on a picture or a ray, and progress."""
+"""What the commands say: a table of a scene, a line on a picture or a ray."""
 
 from __future__ import annotations
 
 import platform
 import sys
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
@@ -114,7 +113,7 @@ def hits_line(hits: Hits, scene: Scene, quality: Quality | None = None) -> str:
     lines = [f"{shape}{int(hits.hit.sum())} of {len(hits)} rays hit, {evaluations:.2f} evaluations a ray, "
              f"prepared in {1000 * hits.prep_s:.0f} ms, traced in {1000 * hits.ray_s:.0f} ms",
              ", ".join(f"{count} {name}" for name, count in hits.counts().items()) or "no rays"]
-    lines += _taken(hits, scene)
+    lines += _taken(hits) + _chosen(hits, scene)
     if quality is not None and not quality.relevant:
         lines.append("against the exact surface: no relevant rays, all show background and should")
     elif quality is not None:
@@ -124,19 +123,37 @@ def hits_line(hits: Hits, scene: Scene, quality: Quality | None = None) -> str:
     return "\n  ".join(lines)
 
 
-def _taken(hits: Hits, scene: Scene) -> list[str]:
-    """Balls gathered and planes or polynomials kept at their centres, so far; degrees lowered."""
-    from jaart.core.balls import CloudTracer
-    from jaart.core.prepare import prepared
-
-    parts = []
-    tracer = prepared(scene, hits.settings).tracer
-    if isinstance(tracer, CloudTracer):
-        fits = f", {_count(tracer.fits, 'fit')} at their centres beside the evaluations" if tracer.fits else ""
-        parts.append(f"{_count(tracer.gathered, 'ball')} gathered{fits}")
+def _taken(hits: Hits) -> list[str]:
+    """What a ray took on average, and what all of them took together."""
+    mean = 1 / max(1, len(hits))
+    each = [f"{mean * float(column.sum()):.2f} {noun}" for noun, column in (
+        ("cells or balls", hits.cells), ("searches", hits.starts), ("surfels weighed", hits.neighbours))]
+    parts = [_count(int(column.sum()), noun) for noun, column in (
+        ("eigenvector", hits.eigenvectors), ("gradient", hits.gradients))]
+    if hits.gathered:
+        fits = f", {_count(hits.fits, 'fit')} at their centres beside the evaluations" if hits.fits else ""
+        parts.append(f"{_count(hits.gathered, 'place')} gathered{fits}")
     if lowered := int(hits.lowered.sum()):
         parts.append(f"{_count(lowered, 'evaluation')} of a lower degree than {hits.settings.degree}")
-    return ["; ".join(parts)] if parts else []
+    return [f"{', '.join(each)} a ray; {', '.join(parts)}"]
+
+
+def _chosen(hits: Hits, scene: Scene) -> list[str]:
+    """What a radius and a tolerance of `auto` came to, and why."""
+    from jaart.core.chosen import chosen, explained, tolerance_unit
+    from jaart.core.settings import PARAMETERS
+    from jaart.core.visible import for_picture, of_hits
+
+    auto = [name for name in ("radius", "tolerance")
+            if getattr(hits.settings, name) == "auto" and PARAMETERS[name].matters(hits.settings)]
+    parts = []
+    if "radius" in auto:
+        radius, why = explained(scene, of_hits(scene, hits))["radius"]
+        parts.append(f"radius {radius:.4g}{'' if scene.kind == 'cloud' else ' cells'}, {why}")
+    if "tolerance" in auto:
+        number, why = for_picture(scene, hits.settings, hits.camera, hits.size)
+        parts.append(f"tolerance {number:g} {tolerance_unit(chosen(scene, hits.settings))}, {why}")
+    return ["auto: " + "; ".join(parts)] if parts else []
 
 
 def say_notes(scene: Scene, settings: Settings, hits: Hits | None = None) -> None:
@@ -171,22 +188,6 @@ def say_compiling(scene: Scene, settings: Settings) -> None:
     if needs_compile(scene, settings):
         print("Compiling kernels that are needed for the first time on this machine; this takes some seconds, once.",
               file=sys.stderr)
-
-
-@contextmanager
-def progress_bar(unit: str = "ray") -> Iterator[Callable[[int, int], None] | None]:
-    """A bar on a terminal for work of over a second, None elsewhere."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    from tqdm import tqdm
-
-    with tqdm(unit=unit, unit_scale=True, delay=1.0, leave=False) as bar:
-        def progress(done: int, total: int) -> None:
-            bar.total = total
-            bar.update(done - bar.n)
-
-        yield progress
 
 
 def _solid(solid: Any) -> dict[str, Any]:

@@ -42,7 +42,7 @@ def plan_of(scene: Scene, settings: Settings, values: Chosen) -> Plan:
     evaluate = address_of(evaluator(values), call.EVALUATE)
     meets = address_of(approach.approach, call.APPROACH) if rule.degree > 0 else 0
     how = Search(kind=SEARCHES[values.search], proof=int(settings.proof), evaluate=evaluate, approach=meets,
-                 accept=address_of(accept.accept, call.ACCEPT), arrived=arrival(settings, values),
+                 accept=address_of(accept.accept, call.ACCEPT), arrived=arrival(values),
                  by_value=int(values.method in FITTED), cap=settings.max_iterations, trust=values.trust,
                  growth=int(settings.bail == "growth"), step=values.step,
                  energy=ENERGY_NUMBERS.get(values.method, r.TANGENT_STEP), emphasise=int(settings.emphasise),

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from jaart.core import extents
+from jaart.core import extents, visible
 from jaart.core.cloud import AUTO_H
 from jaart.core.errors import SettingsError
 from jaart.core.groups.surface import ENERGIES
@@ -51,7 +51,7 @@ class Chosen:
     method, search, weight, normal, neighbourhood: as in the settings, none of them auto; h: feature size; radius:
     of the neighbourhood, infinite where k counts; trust: how far a search goes from its start; off_centre,
     nearest: bounds, infinite for none; level: of the energy or mesh; step: of march;
-    stride: of the uniform traversal.
+    stride: of the uniform traversal; tolerance: in h, or in radii where these are shorter.
     """
 
     method: str
@@ -67,6 +67,7 @@ class Chosen:
     level: float
     step: float
     stride: float
+    tolerance: float
 
 
 #: A value, and in words where it comes from.
@@ -96,7 +97,8 @@ def explained(scene: Scene, settings: Settings) -> dict[str, Explained]:
     return found | {
         "trust": _or_length(scene, settings, "trust", trust), "level": _level(settings, h),
         "off_centre": _or_length(scene, settings, "max_off_centre", (OFF_CENTRE * h, "h")),
-        "nearest": _or_length(scene, settings, "max_nearest", nearest), **_strides(settings, h, lattice)}
+        "nearest": _or_length(scene, settings, "max_nearest", nearest), **_strides(settings, h, lattice),
+        "tolerance": _tolerance(scene, settings, h, radius)}
 
 
 def _strides(settings: Settings, h: float, lattice: bool) -> dict[str, Explained]:
@@ -171,15 +173,22 @@ def _radius(scene: Scene, settings: Settings, neighbourhood: str, h: float) -> E
     jumps = 0.0 if scene.kind == "cloud" else _without_jumps(settings, neighbourhood, h)
     if jumps > share * h:
         return jumps, "where f jumps by no more than the tolerance" + _DIAGONAL * (neighbourhood == "cell_ball")
-    return share * h, f"{share:g} h"
+    return share * h, f"{share:g} h{', as no more can be seen' if settings.tolerance == 'auto' else ''}"
 
 
 def _without_jumps(settings: Settings, neighbourhood: str, h: float) -> float:
     """The radius at whose end f jumps by no more than the tolerance; 0 where that is not asked for."""
-    if settings.tolerance >= COARSE or not PARAMETERS["tolerance"].matters(settings):
+    fine = finite(settings.tolerance, COARSE)
+    if fine >= COARSE or not PARAMETERS["tolerance"].matters(settings):
         return 0.0
-    reach = h * math.sqrt(-math.log(NEGLIGIBLE * max(settings.tolerance, float(np.finfo(np.float64).eps))))
+    reach = h * math.sqrt(-math.log(NEGLIGIBLE * max(fine, float(np.finfo(np.float64).eps))))
     return reach + HALF_DIAGONAL if neighbourhood == "cell_ball" else reach
+
+
+def _tolerance(scene: Scene, settings: Settings, h: float, radius: float) -> Explained:
+    if isinstance(settings.tolerance, str):
+        return visible.tolerance(scene, settings, h, min(h, radius))
+    return settings.tolerance, AS_SET
 
 
 def _search(settings: Settings) -> Explained:
@@ -227,15 +236,18 @@ def _shell_level(settings: Settings, energy: str, h: float) -> float:
             "mahalanobis": 2 * settings.mahalanobis_c * h * h + half * half}[energy]
 
 
-def arrival(settings: Settings, chosen: Chosen) -> float:
-    """How short a step ends a search: the tolerance counts in h, but in radii where the radius is smaller, for what
-    h does ends there.
-    """
-    return settings.tolerance * min(chosen.h, chosen.radius)
+def arrival(chosen: Chosen) -> float:
+    """How short a step ends a search."""
+    return chosen.tolerance * unit_of(chosen)
+
+
+def unit_of(chosen: Chosen) -> float:
+    """The tolerance counts in h, but in radii where the radius is smaller, for what h does ends there."""
+    return min(chosen.h, chosen.radius)
 
 
 def tolerance_unit(chosen: Chosen) -> str:
-    """What the tolerance counts in, see `arrival`."""
+    """The name of that."""
     return "h" if chosen.h <= chosen.radius else "radii"
 
 

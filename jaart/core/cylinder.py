@@ -60,7 +60,8 @@ def with_reach(values: Chosen) -> Chosen:
 
 def cylinder_tracer(values: Chosen, plan: Plan, cells: Callable[[Chosen], Cells]) -> CylinderTracer:
     """What rays are sent through; cells: makes the table of a neighbourhood."""
-    return CylinderTracer(cells(with_reach(values)), plan, values.h)
+    made = cells(with_reach(values))
+    return CylinderTracer(lambda: made, plan, values.h)
 
 
 @functools.cache
@@ -68,7 +69,8 @@ def warm_up() -> None:
     """Run the kernels once, so that none compiles later."""
     found = Surfels(np.array([[1, 1, 1]], np.int32), np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]))
     plan: Any = None
-    tracer = CylinderTracer(cell_table(found, (3, 3, 3), _SMALL, 1), plan, 1.0)
+    small = cell_table(found, (3, 3, 3), _SMALL, 1)
+    tracer = CylinderTracer(lambda: small, plan, 1.0)
     tracer.trace(np.array([[1.5, 1.5, 9.0]]), np.array([[0.0, 0.0, -1.0]]), np.zeros(1, np.int64), columns_for(1),
                  np.empty((1, LOG_WIDTH)))
     cylinder.write_shares(tracer.sites, (1, 1, 1), (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), 1.0, np.empty(2))
@@ -76,4 +78,4 @@ def warm_up() -> None:
 
 _SMALL = Chosen(method="cylinder", search="iterate", weight="gaussian", normal="surfel", neighbourhood="cell_ball",
                 h=1.0, radius=reach(1.0), trust=1.0, off_centre=math.inf, nearest=math.inf, level=0.0, step=1.0,
-                stride=1.0)
+                stride=1.0, tolerance=1.0)

@@ -19,13 +19,14 @@ from jaart.core.records import STATUS_NAMES, Hits, Trace
 from jaart.core.settings import PARAMETERS, Settings
 from jaart.core.statistics import Statistics, table
 from jaart.core.surfels import Surfels
+from jaart.core.telling import doing
 
 Target = str | PathLike[str]
 
 #: The vectors of a step, by the name of their columns.
 _VECTORS = {"query": "query", "barycentre": "barycentre", "normal": "step_normal", "next": "next_point"}
 _PER_RAY = ("origin", "direction", "hit", "t", "point", "normal", "status", "off_centre", "energy", "iterations",
-            "evaluations", "neighbours", "cells", "lowered", "gap")
+            "evaluations", "neighbours", "cells", "lowered", "gap", "starts", "eigenvectors", "gradients")
 
 
 def save_picture(picture: NDArray[np.uint8], path: Target) -> None:
@@ -37,13 +38,15 @@ def save_picture(picture: NDArray[np.uint8], path: Target) -> None:
 
 
 def hits_arrays(hits: Hits) -> dict[str, Any]:
-    """Everything of the hits by name: one row a ray, then the names of the end states, prep_s, ray_s and the text
-    shading_normal, which says what `normal` holds.
+    """Everything of the hits by name: one row a ray, then the names of the end states, prep_s, ray_s, gathered, fits
+    and the text shading_normal, which says what `normal` holds.
     """
     return {**{name: getattr(hits, name) for name in _PER_RAY}, "status_names": np.array(STATUS_NAMES),
-            "prep_s": hits.prep_s, "ray_s": hits.ray_s, "shading_normal": hits.settings.shading_normal}
+            "prep_s": hits.prep_s, "ray_s": hits.ray_s, "gathered": hits.gathered, "fits": hits.fits,
+            "shading_normal": hits.settings.shading_normal}
 
 
+@doing("writing the hits")
 def save_hits(hits: Hits, path: Target) -> None:
     """Write the hits as .npz (see `hits_arrays`)."""
     with replacing(Path(path)) as part, part.open("wb") as file:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from jaart.core.interface_cells import interface_cells
 from jaart.core.quadrature import integrate
 from jaart.core.shapes import Array, Shape
+from jaart.core.telling import tell
 
 Ints = NDArray[np.intp]
 
@@ -31,12 +32,15 @@ def accurate(solids: Sequence[Shape], raster: int) -> Array:
     edges of cells and slices and where they end; what else is not smooth is halved until it is.
     """
     levels, groups = interface_cells(solids, raster)
+    done, total = 0, sum(len(cells) for _, cells in groups)
     for members, cells in groups:
         found = [solids[k] for k in members]
         steepest = _steepest(found, cells)
         for up in range(3):
             for piece in _pieces(cells[steepest == up]):
                 levels[tuple(piece.T)] = _rounded(_levels(found, piece, up))
+                done += len(piece)
+                tell(done, total)
     return levels
 
 

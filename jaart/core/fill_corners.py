@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from jaart.core.interface_cells import descend
 from jaart.core.shapes import Array, Convex, Mask, Shape
+from jaart.core.telling import tell
 
 #: How many corners of sub-cells are looked at in one piece: small enough for the processor's cache.
 PIECE = 1 << 17
@@ -37,6 +38,7 @@ def corners(solids: Sequence[Shape], raster: int, subdivision: int) -> Array:
     for start in range(0, len(cells), step):
         piece = cells[start:start + step]
         levels[tuple(piece.T)] = _subdivided(solids, piece, subdivision)
+        tell(start + len(piece), len(cells))
     return levels
 
 

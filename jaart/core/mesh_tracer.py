@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Event
 
@@ -28,7 +29,7 @@ MARGIN = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class MeshTracer(OnLattice):
-    """A mesh that rays meet; the cells are those of the energies along a ray.
+    """A mesh that rays meet; the cells are those of the energies along a picked ray, which a picture does without.
 
     mesh: its triangles; faces: the same with a tree over them.
     """
@@ -50,22 +51,22 @@ def faces_of(mesh: Mesh, flat: bool) -> Faces:
     return Faces(mesh.vertices, mesh.triangles, mesh.normals, tree, int(flat))
 
 
-def mesh_tracer(scene: Scene, settings: Settings, values: Chosen, cells: Cells, plan: Plan, levels: Array,
-                cancel: Event | None = None) -> MeshTracer:
+def mesh_tracer(scene: Scene, settings: Settings, values: Chosen, table: Callable[[], Cells], plan: Plan,
+                levels: Array, cancel: Event | None = None) -> MeshTracer:
     """What rays are sent through where the method is one of MESHES; the mesh is kept in the scene.
 
-    cells, plan: neighbourhoods, and how a point is evaluated; levels: fill levels. Raises what `energy_mesh` and
-    `level_mesh` do.
+    table: makes the neighbourhoods; plan: how a point is evaluated; levels: fill levels. Raises what `energy_mesh`
+    and `level_mesh` do.
     """
     def make() -> Mesh:
         if values.method == "fill_level":
             return level_mesh(levels, settings, values.level, edges(scene))
-        energy = Energy(cells, plan, settings.energy, settings.emphasise)
+        energy = Energy(table(), plan, settings.energy, settings.emphasise)
         return energy_mesh(energy, settings.subdivide, values.level, cancel=cancel)
 
     key, flat = (settings.key("rays"), values), shows_gradient(settings)
     mesh = scene.once("mesh", key, make)
-    return MeshTracer(cells, plan, mesh, scene.once("faces", (key, flat), lambda: faces_of(mesh, flat)))
+    return MeshTracer(table, plan, mesh, scene.once("faces", (key, flat), lambda: faces_of(mesh, flat)))
 
 
 def warm_up(method: str, cells: Cells, plan: Plan) -> None:

@@ -8,6 +8,7 @@ from jaart.core import cloud, extents, prepare
 from jaart.core.chosen import Chosen, arrival, chosen, counts_nearest, tolerance_unit
 from jaart.core.cloud_surfels import Points
 from jaart.core.collapse import collapsing
+from jaart.core.groups.surface import evaluates
 from jaart.core.records import STATUS, Hits
 from jaart.core.scene import Scene
 from jaart.core.settings import PARAMETERS, Settings
@@ -21,10 +22,17 @@ def notes(scene: Scene, settings: Settings) -> tuple[str, ...]:
     for settings that make no sense in the scene.
     """
     values = chosen(scene, settings)
-    found = prepare.points(scene, settings, values)
-    return (*found.notes, *_neighbours(scene, settings, values, len(found)), *_small_solids(scene, settings),
-            *_feature_size(scene, settings, values, found), *collapsing(scene, settings, values),
+    return (*_points(scene, settings, values), *_small_solids(scene, settings), *collapsing(scene, settings, values),
             *_precision(scene, settings, values))
+
+
+def _points(scene: Scene, settings: Settings, values: Chosen) -> tuple[str, ...]:
+    """What there is to say of the surfels, where any are asked for."""
+    if not evaluates(values):
+        return ()
+    found = prepare.points(scene, settings, values)
+    return (*found.notes, *_neighbours(scene, settings, values, len(found)),
+            *_feature_size(scene, settings, values, found))
 
 
 def of_hits(scene: Scene, hits: Hits) -> tuple[str, ...]:
@@ -105,11 +113,11 @@ def _small_solids(scene: Scene, settings: Settings) -> tuple[str, ...]:
 def _precision(scene: Scene, settings: Settings, values: Chosen) -> tuple[str, ...]:
     """A tolerance below the distance of one coordinate to the next."""
     largest = float(np.abs(extents.bounds(scene, settings)).max())
-    step, tolerance = float(np.spacing(largest)), arrival(settings, values)
+    step, tolerance = float(np.spacing(largest)), arrival(values)
     if step <= tolerance or not PARAMETERS["tolerance"].matters(settings):
         return ()
     return (f"coordinates up to {largest:.4g} are exact to {step:.2g}, and hits no more than that: the tolerance is "
-            f"{settings.tolerance:g} {tolerance_unit(values)}, a length of {tolerance:.2g}",)
+            f"{values.tolerance:g} {tolerance_unit(values)}, a length of {tolerance:.2g}",)
 
 
 def _only(count: int, noun: str) -> str:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from jaart.core.cloud import local_points, nearest_others, offset
 from jaart.core.scene import Array, Scene, frozen
+from jaart.core.telling import tell
 
 Ints = NDArray[np.intp]
 Vector = tuple[float, float, float]
@@ -85,6 +86,7 @@ def estimated(points: Array, index: Ints) -> tuple[Array, Array]:
     """
     normal, gap = np.empty(points.shape), np.zeros(len(points))
     for begin in range(0, len(points), POINTS_AT_ONCE):
+        tell(begin, len(points))
         part = slice(begin, begin + POINTS_AT_ONCE)
         normal[part], gap[part] = _estimated(points[part], points[index[part]])
     return normal, gap

@@ -8,7 +8,7 @@ from threading import Event
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core import extents
+from jaart.core import extents, visible
 from jaart.core.camera import Camera
 from jaart.core.colours import Bytes
 from jaart.core.quality import quality as errors_of
@@ -78,7 +78,7 @@ def _averaged(hits: Hits, scene: Scene, theme: str, settings: Settings, cancel: 
     """The picture in strips of whole rows, so that many samples take no more memory than few."""
     assert hits.camera is not None and hits.size is not None
     (width, height), n = hits.size, settings.samples
-    fine, traced = (width * n, height * n), hits.settings.replace(samples=1)
+    fine, traced = (width * n, height * n), visible.of_hits(scene, hits).replace(samples=1)
     rows, total = max(1, RAYS_AT_ONCE // (fine[0] * n)), fine[0] * fine[1]
     result = np.empty((height, width, 3), np.uint8)
     for top in range(0, height, rows):

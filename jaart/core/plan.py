@@ -9,8 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from jaart.core import meaning, quality
-from jaart.core.chosen import Chosen, arrival, explained, tolerance_unit
+from jaart.core import extents, meaning, quality, visible
+from jaart.core.camera import Camera
+from jaart.core.chosen import AS_SET, Chosen, arrival, explained, tolerance_unit
 from jaart.core.lights import shadows_wanted
 from jaart.core.parameter import shown
 from jaart.core.plan_rays import ray_stages
@@ -67,18 +68,22 @@ class Plan:
         return {name: shown(getattr(self.settings, name)) for name in one.settings}
 
 
-def plan(scene: Scene, settings: Settings | None = None) -> Plan:
+def plan(scene: Scene, settings: Settings | None = None, camera: Camera | None = None,
+         size: tuple[int, int] = (512, 512)) -> Plan:
     """The stages that a picture of a scene takes and those it leaves out, and the values that its settings come to.
 
-    settings: those of the preset "best" when None. Raises SettingsError for settings that make no sense in the scene.
+    settings: those of the preset "best" when None; camera: the whole scene in view when None; size: (width, height).
+    Raises SettingsError for settings that make no sense in the scene.
     """
     settings = settings or preset("best")
-    values = meaning.check(scene, settings)
+    camera = camera or Camera.fit(extents.bounds(scene, settings), size=size)
+    values = meaning.check(scene, visible.seen(scene, settings, camera, size))
     stages = (*scene_stages(scene, settings, values), *ray_stages(scene, settings, values),
               *_picture_stages(scene, settings))
     kept = tuple(replace(one, settings=tuple(name for name in one.settings if _matters(scene, settings, name)))
                  for one in stages)
-    return Plan(scene.source, scene.kind, settings, kept, _values(scene, settings, values))
+    return Plan(scene.source, scene.kind, settings, kept, (*_values(scene, settings, values),
+                                                           *_tolerance(scene, settings, values, camera, size)))
 
 
 def _picture_stages(scene: Scene, settings: Settings) -> tuple[Stage, ...]:
@@ -87,7 +92,7 @@ def _picture_stages(scene: Scene, settings: Settings) -> tuple[Stage, ...]:
         stage("shadow rays", shadows_wanted(settings), "from each hit to each light", "none are asked for",
               "shadows", "light", "shading"),
         stage("reflection and refraction", settings.shading == "water", f"up to {settings.depth} times a ray",
-              "shading is no water", "shading", "depth", "ior"),
+              "shading is no water: no stack of media either", "shading", "depth", "ior"),
         stage("more samples", settings.samples > 1, f"{settings.samples}×{settings.samples} rays a pixel",
               "one ray a pixel", "samples"),
         stage("exact surface", quality.known(scene), "known: errors are measured where they are asked for",
@@ -97,14 +102,23 @@ def _picture_stages(scene: Scene, settings: Settings) -> tuple[Stage, ...]:
 def _values(scene: Scene, settings: Settings, values: Chosen) -> tuple[Value, ...]:
     """What settings that have a meaning here came to."""
     origins = explained(scene, settings)
-    unit = "cells" if scene.kind != "cloud" else "cloud units"
-    found = [Value(name, value, "" if isinstance(value, str) or name == "level" else unit, origin)
-             for name, (value, origin) in ((name, origins[field]) for name, field in RESOLVED.items())
-             if _matters(scene, settings, name)]
-    if _matters(scene, settings, "tolerance"):
-        found.append(Value("tolerance", arrival(settings, values), unit,
-                           f"{settings.tolerance:g} {tolerance_unit(values)}, as set"))
-    return tuple(found)
+    return tuple(Value(name, value, "" if isinstance(value, str) or name == "level" else _unit(scene), origin)
+                 for name, (value, origin) in ((name, origins[field]) for name, field in RESOLVED.items())
+                 if _matters(scene, settings, name))
+
+
+def _tolerance(scene: Scene, settings: Settings, values: Chosen, camera: Camera,
+               size: tuple[int, int]) -> tuple[Value, ...]:
+    """How short a step ends a search, and why, where one does."""
+    if not _matters(scene, settings, "tolerance"):
+        return ()
+    why = AS_SET if settings.tolerance != "auto" else visible.for_picture(scene, settings, camera, size)[1]
+    return (Value("tolerance", arrival(values), _unit(scene), f"{values.tolerance:g} {tolerance_unit(values)}, {why}"),)
+
+
+def _unit(scene: Scene) -> str:
+    """What lengths count in."""
+    return "cells" if scene.kind != "cloud" else "cloud units"
 
 
 def _matters(scene: Scene, settings: Settings, name: str) -> bool:

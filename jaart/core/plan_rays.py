@@ -31,8 +31,20 @@ BOUNDS: tuple[tuple[str, str, Callable[[Bounds], bool], str], ...] = (
 def ray_stages(scene: Scene, settings: Settings, values: Chosen) -> tuple[Stage, ...]:
     """What rays take, in the order of the computation."""
     rule = rule_of(scene, settings, values)
-    return (*_sums(settings, values, rule), *_fits(values, rule), *_search(scene, settings, values),
-            *_bounds(settings, values))
+    return (_traversal(scene, settings, values), *_sums(settings, values, rule), *_fits(values, rule),
+            *_search(scene, settings, values), *_bounds(settings, values))
+
+
+def _traversal(scene: Scene, settings: Settings, values: Chosen) -> Stage:
+    """How a ray comes from place to place."""
+    if values.method in MESHES:
+        return Stage("traversal", False, "the tree of the triangles takes its place", ("method",))
+    if scene.kind == "cloud":
+        return Stage("traversal", True, "the balls that the ray pierces, the nearest first")
+    even = settings.traversal == "uniform" and values.method != "cylinder"
+    return Stage("traversal", True, f"every {values.stride:g} cells, and what is empty at once" if even else
+                 "each cell that the ray crosses, and what is empty at once", ("traversal", "step") if even else
+                 ("traversal",))
 
 
 def summed(settings: Settings, values: Chosen, rule: Rule) -> dict[str, bool]:
@@ -91,10 +103,15 @@ def _fits(values: Chosen, rule: Rule) -> tuple[Stage, ...]:
 def _search(scene: Scene, settings: Settings, values: Chosen) -> tuple[Stage, ...]:
     kept = meaning.fits_centres(scene, values) and searches(values)
     why_not = "a lattice keeps none" if scene.kind != "cloud" else "balls are searched from side to side"
+    guessed = "where the ray meets what is kept at a ball's centre"
+    unguessed = "a search begins where the ray enters a cell" if searches(values) else "no ray is searched"
+    if meaning.stretches(values) and searches(values):
+        unguessed = "a place is searched from side to side"
     where = "from side to side of each place" if meaning.stretches(values) else "from a start in each place"
     return (
-        stage("centre fits", kept, "kept for each ball that a ray asks for, as the first guess", why_not,
+        stage("centre fits", kept, "kept for each ball that a ray asks for", why_not,
               "method", "search"),
+        stage("first guess", kept, guessed, unguessed, "method", "search"),
         stage("search", searches(values), f"{values.search}, {where}",
               "triangles are hit at once" if values.method in MESHES else "discs are hit at once", "method", "search"),
         stage("proof of misses", settings.proof, "bounds of the weights", "none is asked for", "search", "proof"))

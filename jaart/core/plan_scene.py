@@ -9,13 +9,15 @@ from jaart.core.scene import Scene
 from jaart.core.settings import Settings
 from jaart.core.stage import Stage, stage
 
+_PICKED = "the mesh of the levels needs none; made once a ray is picked, for the energies along it"
 _NO_LEVELS = "a cloud has no fill levels"
 
 
 def scene_stages(scene: Scene, settings: Settings, values: Chosen) -> tuple[Stage, ...]:
     """What is made before the first ray, in its order."""
     surfels = _cloud(scene, settings, values) if scene.kind == "cloud" else _lattice(scene, settings)
-    return (*surfels, _table(scene, settings, values), _balls(scene, settings, values), *_mesh(settings, values))
+    return (*surfels, _table(scene, settings, values), _unasked(scene, values), _distance_field(scene, values),
+            _balls(scene, settings, values), _tree(scene, values), *_mesh(settings, values))
 
 
 def _lattice(scene: Scene, settings: Settings) -> tuple[Stage, ...]:
@@ -23,8 +25,10 @@ def _lattice(scene: Scene, settings: Settings) -> tuple[Stage, ...]:
         stage("fill levels", scene.kind == "model", f"the solids are filled, {settings.filling}",
               "they were read from the file", "raster", "filling", "subdivision"),
         stage("filter", filters.wanted(settings), settings.filter, "none is asked for", "filter"),
-        Stage("gradient", True, "a surfel lies along it, and its normal is against it", ("gradient", "smoothing")),
-        Stage("placement", True, "each interface cell gives a surfel", ("placement", "neighbours", "border")),
+        stage("gradient", evaluates(settings), "a surfel lies along it, and its normal is against it", _PICKED,
+              "method", "gradient", "smoothing"),
+        stage("placement", evaluates(settings), "each interface cell gives a surfel", _PICKED,
+              "method", "placement", "neighbours", "border"),
         Stage("estimated normals", False, "surfels of a lattice have the gradient's"))
 
 
@@ -43,7 +47,7 @@ def _table(scene: Scene, settings: Settings, values: Chosen) -> Stage:
     if scene.kind == "cloud":
         return Stage("cell table", False, "a cloud has no cells")
     if not evaluates(values):
-        return Stage("cell table", True, "rays need none; it is for the energies along a picked ray", ("method",))
+        return Stage("cell table", False, _PICKED, ("method",))
     if values.method == "cylinder":
         return Stage("cell table", True, "of all surfels that a cylinder in a cell may hold", ("method", "h"))
     return Stage("cell table", True, f"{_near(settings, values)} of each cell", ("neighbourhood", "radius", "k"))
@@ -52,11 +56,34 @@ def _table(scene: Scene, settings: Settings, values: Chosen) -> Stage:
 def _balls(scene: Scene, settings: Settings, values: Chosen) -> Stage:
     """The balls that rays pierce."""
     if scene.kind != "cloud":
-        return Stage("balls", False, "cells take their place; a lattice needs no tree")
+        return Stage("balls", False, "cells take their place")
     if values.method == "cylinder":
-        return Stage("balls", True, "one of radius h around each point, that of its disc, in a tree", ("method", "h"))
-    return Stage("balls", True, f"those that cover the points, in a tree; {_near(settings, values)} of each are "
+        return Stage("balls", True, "one of radius h around each point, that of its disc", ("method", "h"))
+    return Stage("balls", True, f"those that cover the points; {_near(settings, values)} of each are "
                  "gathered when a ray first asks", ("ball_k", "neighbourhood", "radius", "k"))
+
+
+def _unasked(scene: Scene, values: Chosen) -> Stage:
+    """The neighbourhoods of places that no ray visits."""
+    if scene.kind == "cloud":
+        return Stage("neighbours not asked for", False, "a ball has none until a ray asks")
+    return stage("neighbours not asked for", evaluates(values), "the table is of all cells at once", _PICKED, "method")
+
+
+def _distance_field(scene: Scene, values: Chosen) -> Stage:
+    """How far each cell is from the nearest surfel."""
+    if scene.kind == "cloud":
+        return Stage("distance field", False, "a cloud has no cells")
+    return stage("distance field", evaluates(values), "how many empty cells are around each, to be skipped at once",
+                 _PICKED, "method")
+
+
+def _tree(scene: Scene, values: Chosen) -> Stage:
+    """What finds balls along a ray, or the nearest surfels of a cell."""
+    if scene.kind == "cloud":
+        return Stage("tree", True, "of the balls, for rays; of the points, where nearest ones are asked for")
+    return stage("tree", meaning.weighs(values) and counts_nearest(values.neighbourhood),
+                 "of the surfels, for those nearest to each cell", "a lattice needs none", "method", "neighbourhood")
 
 
 def _near(settings: Settings, values: Chosen) -> str:

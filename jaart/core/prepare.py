@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Event
 
@@ -31,14 +32,19 @@ __all__ = ["Prepared", "cells", "extent", "levels", "prepared", "raster", "solid
 class Prepared:
     """A scene ready to be traced.
 
-    tracer: what rays are sent through; surfels: its points with normals; values: what the settings come to;
+    tracer: what rays are sent through; found: makes its points, or has them; values: what the settings come to;
     seconds: wall time that the stages took which were not kept from before.
     """
 
     tracer: Tracer
-    surfels: Surfels | Points
+    found: Callable[[], Surfels | Points]
     values: Chosen
     seconds: float
+
+    @property
+    def surfels(self) -> Surfels | Points:
+        """The points with normals; where rays meet a mesh of the levels they are made now."""
+        return self.found()
 
 
 def levels(scene: Scene, settings: Settings) -> Array:
@@ -78,15 +84,14 @@ def tracer(scene: Scene, settings: Settings, values: Chosen, cancel: Event | Non
     if scene.kind == "cloud":
         return cloud_tracer(scene, settings, values)
     if values.method in MESHES:
-        return mesh_tracer(scene, settings, values, cells(scene, settings, values),
+        return mesh_tracer(scene, settings, values, lambda: cells(scene, settings, values),
                            plan_of(scene, settings, values), levels(scene, settings), cancel)
     if values.method == "cylinder":
         ball = settings.replace(neighbourhood="cell_ball")
         return cylinder_tracer(values, plan_of(scene, settings, values), lambda near: cells(scene, ball, near))
-    made = cells(scene, settings, values)
     uniform = values.stride if settings.traversal == "uniform" else 0.0
-    return LatticeTracer(made._replace(stretches=int(meaning.stretches(values)), uniform=uniform),
-                         plan_of(scene, settings, values))
+    made = cells(scene, settings, values)._replace(stretches=int(meaning.stretches(values)), uniform=uniform)
+    return LatticeTracer(lambda: made, plan_of(scene, settings, values))
 
 
 def balls(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
@@ -117,4 +122,4 @@ def prepared(scene: Scene, settings: Settings, cancel: Event | None = None) -> P
     begin = time.perf_counter()
     values = meaning.check(scene, settings)
     made = tracer(scene, settings, values, cancel)
-    return Prepared(made, points(scene, settings, values), values, time.perf_counter() - begin)
+    return Prepared(made, lambda: points(scene, settings, values), values, time.perf_counter() - begin)

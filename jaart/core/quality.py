@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from jaart.core import extents, prepare, shapes
 from jaart.core.records import STATUS, Hits, Quality
 from jaart.core.scene import Scene, frozen
+from jaart.core.telling import doing
 
 Array = NDArray[np.float64]
 
@@ -22,6 +23,7 @@ def known(scene: Scene) -> bool:
     return scene.model is not None or scene.exact is not None
 
 
+@doing("errors against the exact surface")
 def quality(hits: Hits, scene: Scene) -> Quality | None:
     """The errors of hits against the scene's exact surface, or None when nobody knows it.
 

@@ -34,9 +34,11 @@ class Hits:
     iterations: steps of the last start; evaluations: steps of all starts; neighbours: surfels summed
     over the evaluations; cells: cells or balls visited (skipped ones are not); lowered: evaluations whose
     polynomial has fewer degrees than asked for; gap: (λ1 - λ0)/λ2 of a hit where min_gap asks for it, else NaN;
-    status: index into STATUS_NAMES.
+    status: index into STATUS_NAMES; starts: searches begun; eigenvectors: of covariances, for n(x); gradients: passes
+    over the surfels for ∇f in closed form.
     size: (width, height) of a picture, row by row from the top, None for a list of rays.
-    prep_s, ray_s: wall seconds of preparation and of all rays.
+    prep_s, ray_s: wall seconds of preparation and of all rays; gathered, fits: places of a cloud made ready for these
+    rays, and planes or polynomials kept at their centres.
     """
 
     origin: Array
@@ -53,11 +55,16 @@ class Hits:
     lowered: Ints
     gap: Array
     status: NDArray[np.uint8]
+    starts: Ints
+    eigenvectors: Ints
+    gradients: Ints
     settings: Settings
     camera: Camera | None = None
     size: tuple[int, int] | None = None
     prep_s: float = 0.0
     ray_s: float = 0.0
+    gathered: int = 0
+    fits: int = 0
 
     @property
     def hit(self) -> NDArray[np.bool_]:

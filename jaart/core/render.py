@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core import extents, memory, prepare
+from jaart.core import extents, memory, prepare, visible
 from jaart.core.camera import Camera, check_size
+from jaart.core.counters import Made, made_by, since
 from jaart.core.errors import Cancelled, RayError
 from jaart.core.kernels.pinhole import View, write_rays
 from jaart.core.kernels.records import Out
@@ -51,11 +52,11 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
     settings = settings or preset("best")
     job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays, any_hit)
     warm_up(scene, settings)
-    ready = prepare.prepared(scene, settings, cancel)
+    ready = prepare.prepared(scene, visible.seen(scene, settings, job.camera, size), cancel)
     count, begin = threads or os.cpu_count() or 1, time.perf_counter()
     with ThreadPoolExecutor(count) as pool:
         watch = _Watch(progress, cancel, job.count)
-        run = _Run(pool, count, ready, job.beginning(ready), settings, watch, begin)
+        run = _Run(pool, count, ready, job.beginning(ready), settings, watch, begin, made_by(ready.tracer))
         if picture and job.size:
             return _refined(run, job.size, picture)
         out = columns_for(job.count)
@@ -148,7 +149,9 @@ def unit(directions: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _Run:
-    """A picture, or a list of rays, under way in a pool of so many threads; begin: when it began."""
+    """A picture, or a list of rays, under way in a pool of so many threads; begin: when it began; before: what its
+    tracer had made by then.
+    """
 
     pool: ThreadPoolExecutor
     threads: int
@@ -157,6 +160,7 @@ class _Run:
     settings: Settings
     watch: _Watch
     begin: float
+    before: Made
 
     @property
     def seconds(self) -> float:
@@ -185,8 +189,9 @@ class _Run:
             columns = {name: column.take(rows, axis=0) for name, column in columns.items()}
         for column in columns.values():
             column.flags.writeable = False
+        made = since(self.before, self.ready.tracer)
         return Hits(**columns, settings=self.settings, camera=job.camera, size=size, prep_s=self.ready.seconds,
-                    ray_s=self.seconds)
+                    ray_s=self.seconds, gathered=made.gathered, fits=made.fits)
 
 
 def _refined(run: _Run, size: Size, picture: Callable[[Hits], None]) -> Hits:

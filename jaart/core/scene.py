@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from jaart.core.errors import FileError
 from jaart.core.shapes import Solid
+from jaart.core.telling import STAGES, doing
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -98,7 +99,8 @@ class Scene:
         with self._lock:
             kept = self._kept.get(stage)
             if kept is None or kept[0] != key:
-                kept = (key, make())
+                with doing(STAGES.get(stage, "")):
+                    kept = (key, make())
                 self._kept[stage] = kept
             result: T = kept[1]
             return result

@@ -57,7 +57,7 @@ def tracer(scene: Scene, settings: Settings, threads: int | None = None, cancel:
     """The tracer of a scene: two tolerances aside, and no sheet is thinner than the feature size h."""
     rounding = 16 * float(np.spacing(np.abs(extents.bounds(scene, settings)).max()))
     values = chosen(scene, settings)
-    offset = max(2 * arrival(settings, values), rounding)
+    offset = max(2 * arrival(values), rounding)
     near = max(values.h, 4 * offset)
     return Tracer(shooter(scene, settings, threads, cancel), offset, near)
 

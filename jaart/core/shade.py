@@ -17,6 +17,7 @@ from jaart.core.records import STATUS_NAMES, Hits, Quality
 from jaart.core.scene import Scene
 from jaart.core.secondary import Tracer, tracer
 from jaart.core.settings import Settings
+from jaart.core.visible import of_hits
 from jaart.core.water import water
 
 __all__ = ["BACKGROUND", "COLOURS", "MAPS", "NO_VALUE", "TABLE", "Map", "needs_scene", "scale", "shade"]
@@ -66,7 +67,7 @@ def _tracer(hits: Hits, settings: Settings, scene: Scene | None, threads: int | 
     if scene is None:
         why = "shading = water" if settings.shading == "water" else "shadows = true"
         raise SettingsError(f"{why}: needs rays from the surface on; expected the scene of the hits")
-    return tracer(scene, hits.settings, threads, cancel)
+    return tracer(scene, of_hits(scene, hits), threads, cancel)
 
 
 def _shaded(colours: Bytes, hits: Hits, settings: Settings, scene: Scene | None, rays: Tracer | None) -> None:

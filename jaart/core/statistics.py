@@ -47,7 +47,7 @@ class Statistics:
     that hit; evaluations: steps of all starts, of the rays that evaluated anything; cells: cells
     or balls visited, of the rays that visited any; neighbours: surfels an evaluation, on average (NaN without
     one); prep_s, ray_s: wall seconds; quality: errors against the exact surface if known; lowered: evaluations whose
-    polynomial has fewer degrees than asked for.
+    polynomial has fewer degrees than asked for; starts, eigenvectors, gradients, gathered, fits: as of Hits, summed.
     """
 
     rays: int
@@ -61,6 +61,11 @@ class Statistics:
     ray_s: float
     quality: Quality | None = None
     lowered: int = 0
+    starts: int = 0
+    eigenvectors: int = 0
+    gradients: int = 0
+    gathered: int = 0
+    fits: int = 0
 
 
 def statistics(hits: Hits, quality: Quality | None = None) -> Statistics:
@@ -70,7 +75,8 @@ def statistics(hits: Hits, quality: Quality | None = None) -> Statistics:
         rays=len(hits), hits=int(hits.hit.sum()), status=hits.counts(),
         iterations=_histogram(hits.iterations[hits.hit]), evaluations=_histogram(hits.evaluations),
         cells=_histogram(hits.cells), prep_s=hits.prep_s, ray_s=hits.ray_s, quality=quality,
-        lowered=int(hits.lowered.sum()),
+        lowered=int(hits.lowered.sum()), starts=int(hits.starts.sum()), gathered=hits.gathered, fits=hits.fits,
+        eigenvectors=int(hits.eigenvectors.sum()), gradients=int(hits.gradients.sum()),
         neighbours=float(hits.neighbours.sum()) / evaluations if evaluations else float("nan"))
 
 
@@ -84,7 +90,9 @@ def table(statistics: Statistics) -> list[Row]:
                        ("mean iterations", "", s.iterations.mean), ("mean evaluations", "", s.evaluations.mean),
                        ("mean cells", "", s.cells.mean), ("mean neighbours", "", s.neighbours),
                        ("evaluations of a lower degree", "", s.lowered),
-                       ("preparation [s]", "", s.prep_s), ("rays [s]", "", s.ray_s)]
+                       ("searches begun", "", s.starts), ("eigenvectors", "", s.eigenvectors),
+                       ("gradients", "", s.gradients), ("places gathered", "", s.gathered),
+                       ("fits at centres", "", s.fits), ("preparation [s]", "", s.prep_s), ("rays [s]", "", s.ray_s)]
     rows += [("end state", name, count) for name, count in s.status.items()]
     for name in ("iterations", "evaluations", "cells"):
         histogram: Histogram = getattr(s, name)

@@ -53,6 +53,10 @@ def columns_for(count: int) -> Out:
     def numbers() -> NDArray[np.int32]:
         return np.empty(count, np.int32)
 
+    def none() -> NDArray[np.int32]:
+        return np.zeros(count, np.int32)
+
     return Out(t=np.empty(count), point=np.empty((count, 3)), normal=np.empty((count, 3)), energy=np.empty(count),
                off_centre=np.empty(count), iterations=numbers(), evaluations=numbers(), neighbours=numbers(),
-               cells=numbers(), lowered=numbers(), gap=np.empty(count), status=np.empty(count, np.uint8))
+               cells=numbers(), lowered=numbers(), gap=np.empty(count), status=np.empty(count, np.uint8),
+               starts=none(), eigenvectors=none(), gradients=none())

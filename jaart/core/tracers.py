@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -53,11 +54,16 @@ class Tracer(Protocol):
 class OnLattice:
     """What tracers of a lattice have in common.
 
-    cells: the surfels' neighbourhoods; plan: how a point is evaluated and a ray searched.
+    table: makes the surfels' neighbourhoods, or has them; plan: how a point is evaluated and a ray searched.
     """
 
-    cells: Cells
+    table: Callable[[], Cells]
     plan: Plan
+
+    @cached_property
+    def cells(self) -> Cells:
+        """The surfels' neighbourhoods, made when they are first asked for."""
+        return self.table()
 
     @property
     def sites(self) -> Sites:

@@ -86,7 +86,7 @@ def _small() -> tuple[Cells, Plan]:
 def _lattice() -> None:
     cells, plan = _small()
     beams.write_blocks(_VIEW, cells.empty, 1, 0, 1, np.empty((1, 1)))
-    LatticeTracer(cells, plan).trace(np.array([_O]), np.array([_D]), np.zeros(1, np.int64), columns_for(1),
+    LatticeTracer(lambda: cells, plan).trace(np.array([_O]), np.array([_D]), np.zeros(1, np.int64), columns_for(1),
                                      np.empty((2, LOG_WIDTH)))
 
 

@@ -18,6 +18,7 @@ from jaart.core.optics import dots, split
 from jaart.core.records import Hits
 from jaart.core.secondary import Tracer, beside, first_hits
 from jaart.core.settings import Settings
+from jaart.core.telling import doing, tell
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -152,6 +153,7 @@ class Water:
             self.colour[first:first + len(sums), channel] += sums
 
 
+@doing("light through water")
 def water(hits: Hits, settings: Settings, around: Environment, tracer: Tracer) -> Radiance:
     """What the rays of a picture see of the water and of what is around it.
 
@@ -161,6 +163,7 @@ def water(hits: Hits, settings: Settings, around: Environment, tracer: Tracer) -
     """
     work = Water(hits, settings, around, tracer)
     for begin in range(0, len(hits), PIECE):
+        tell(begin, len(hits))
         work.follow(slice(begin, begin + PIECE))
     return Radiance(work.colour, work.rays, work.deep, work.faint, work.lost)
 

@@ -18,6 +18,7 @@ from jaart.gui.image_view import ImageView
 from jaart.gui.messages import Log, MessageBar, NoteBar
 from jaart.gui.model import SceneModel
 from jaart.gui.parameters import Parameters
+from jaart.gui.plan import PlanLine
 from jaart.gui.status import Status
 
 FILES = "Scenes (*.npz *.vti *.xml);;All files (*)"
@@ -45,6 +46,7 @@ class MainWindow(QMainWindow):
         centre.layout().setStretch(2, 1)
         self.setCentralWidget(centre)
         self.setStatusBar(Status(self.model))
+        self.statusBar().addPermanentWidget(PlanLine(self.model, self))
         self._make_docks()
         self.actions_ = Actions(self)
         self._connect()

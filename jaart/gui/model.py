@@ -198,9 +198,9 @@ class SceneModel(QObject):
             self.step = index
             self.step_changed.emit()
 
-    def draw_later(self, work: Callable[[], Any], done: Callable[[Any], None]) -> None:
-        """Have something drawn for a panel in a thread of its own; the newest drawing wins."""
-        self._painter.submit("figure", lambda job: work(), done, brief=True)
+    def draw_later(self, work: Callable[[], Any], done: Callable[[Any], None], kind: str = "figure") -> None:
+        """Have something drawn for a panel in a thread of its own; of a kind the newest drawing wins."""
+        self._painter.submit(kind, lambda job: work(), done, brief=True)
 
     def close(self) -> None:
         """Cancel what runs and end the threads."""

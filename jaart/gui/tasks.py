@@ -57,12 +57,13 @@ def read(source: str | PathLike[str], frame: int | None, settings: Settings, bas
          before: Scene | None) -> Opened:
     """A scene and settings for it. Raises FileError for a file that cannot be read."""
     from jaart.core import prepare
+    from jaart.core.groups.surface import evaluates
     from jaart.core.io import load
     from jaart.gui.suit import suited
 
     scene = load(source, frame)
     settings, changed = suited(scene, settings, base, before)
-    if scene.kind != "cloud":
+    if scene.kind != "cloud" and evaluates(settings):
         prepare.surfels(scene, settings)
     return Opened(scene, bounds(scene, settings), settings, changed)
 
@@ -107,6 +108,8 @@ def _known(scene: Scene, settings: Settings, values: Chosen) -> Known:
 def ray(scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int], pixel: tuple[int, int]) -> Trace:
     """The ray through a pixel with every step."""
     from jaart.core.trace import trace
+    from jaart.core.visible import seen
 
+    settings = seen(scene, settings, camera, size)
     origins, directions = camera.rays(size, np.array([pixel[0] + pixel[1] * size[0]]))
     return trace(scene, settings, origins[0], directions[0], pixel=pixel)

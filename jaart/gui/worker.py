@@ -16,7 +16,7 @@ from jaart.gui.garbage import GarbageCollector
 log = logging.getLogger("jaart")
 
 #: Kinds of jobs, the most urgent first.
-KINDS = ("open", "picture", "trace", "figure")
+KINDS = ("open", "picture", "trace", "figure", "plan")
 
 
 class Job:

@@ -33,7 +33,8 @@ def exact_hits(balls: Sequence[Sphere], origin: Array, direction: Array, last: b
     status = np.where(count > 0, STATUS["converged"], STATUS["background"]).astype(np.uint8)
     return Hits(origin=origin, direction=direction, t=t, point=origin + t[:, None] * direction, normal=normal,
                 energy=t * 0, off_centre=t * 0, iterations=count, evaluations=count, neighbours=count, cells=count,
-                lowered=0 * count, gap=np.full(len(count), np.nan), status=status, settings=Settings())
+                lowered=0 * count, gap=np.full(len(count), np.nan), status=status, starts=count,
+                eigenvectors=0 * count, gradients=0 * count, settings=Settings())
 
 
 def shooting_at(*balls: Sphere) -> Shoot:

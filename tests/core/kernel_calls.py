@@ -84,4 +84,4 @@ def value_of(near: Near, x: Sequence[float], rule: Rule, gradient: bool = False)
 def fitted_value(near: Near, x: Sequence[float], rule: Rule) -> tuple[Value, Array]:
     """The polynomial surface at x, and the coefficients."""
     fit = np.full(r.FIT_SIZE, np.nan)
-    return polynomial(near, place(x), rule, r.VALUE_ONLY, work_for(near), fit), fit
+    return polynomial(near, place(x), rule, r.VALUE_ONLY, work_for(near), fit), fit[:r.COEFFICIENTS]

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.spatial
 
 import jaart
-from jaart.core import filters, lights, meshes, picture, prepare, shade, surfels
+from jaart.core import cell_table, cloud_surfels, filters, lights, meshes, picture, prepare, shade, surfels
 from jaart.core.assemble import evaluator, rule_of, searcher
 from jaart.core.balls import CloudTracer
 from jaart.core.camera import Camera
@@ -111,6 +112,50 @@ def test_the_energy_field(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert len(calls) == planned["energy field"].runs
 
 
+@pytest.mark.parametrize(("made", "given"), [
+    *(("lattice", given) for given in ({}, {"neighbourhood": "knn"}, {"neighbourhood": "cell_knn"},
+                                       {"method": "cylinder"}, {"method": "fill_level"},
+                                       {"method": "isosurface", "subdivide": 1})),
+    ("cloud", {}), ("cloud", {"neighbourhood": "knn"}), ("cloud", {"method": "cylinder"})])
+def test_trees_and_the_distance_field(made: str, given: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[str] = []
+    scene, settings = MADE[made](), Settings(**given)
+    planned = plan(scene, settings)
+    counted(monkeypatch, calls, cell_table.table, "fill_empty")
+    counted(monkeypatch, calls, scipy.spatial, "cKDTree")
+    counted(monkeypatch, calls, cloud_surfels, "ball_tree")
+    render(scene, settings, size=(4, 4))
+    assert planned["distance field"].runs == ("fill_empty" in calls)
+    assert planned["tree"].runs == (("ball_tree" if made == "cloud" else "cKDTree") in calls)
+
+
+@pytest.mark.parametrize("made", ["lattice", "cloud"])
+def test_only_a_table_has_neighbours_that_no_ray_asked_for(made: str) -> None:
+    scene, settings = MADE[made](), Settings()
+    hits = render(scene, settings, size=(2, 2))
+    tracer = prepare.prepared(scene, settings).tracer
+    ready = tracer.gathered if isinstance(tracer, CloudTracer) else np.count_nonzero(np.diff(tracer.sites.first))
+    assert plan(scene, settings)["neighbours not asked for"].runs == (ready > hits.cells.sum())
+
+
+@pytest.mark.parametrize("made", ["lattice", "cloud"])
+@pytest.mark.parametrize("search", [s for s in PARAMETERS["search"].choices if s != "auto"])
+def test_first_guesses_are_kept_where_they_are_planned(made: str, search: str) -> None:
+    scene, settings = MADE[made](), Settings(search=search)
+    hits = render(scene, settings, size=(8, 8))
+    assert hits.starts.any() and plan(scene, settings)["first guess"].runs == (hits.fits > 0)
+
+
+@pytest.mark.parametrize(("given", "said"), [
+    ({}, "each cell"), ({"traversal": "uniform", "step": 0.25}, "every 0.25 cells"), ({"method": "fill_level"}, None)])
+def test_how_a_ray_comes_from_cell_to_cell(given: dict[str, Any], said: str | None) -> None:
+    scene, settings = lattice(), Settings(**given)
+    visited, exact = (render(scene, one, size=(12, 12)).cells for one in (settings, Settings()))
+    one = plan(scene, settings)["traversal"]
+    assert one.runs == (said is not None) and one.reason.startswith(said or "the tree of the triangles")
+    assert (visited != exact).any() == bool(given)
+
+
 @pytest.mark.parametrize("given", [
     {}, {"shadows": True}, {"light": ((30.0, 5.0, 30.0),)}, {"light": ((30.0, 5.0, 30.0),), "shadows": True},
     {"light": ((30.0, 5.0, 30.0),), "shadows": True, "shading": "diffuse"}, {"shading": "water"}, {"samples": 2}])
@@ -205,6 +250,27 @@ def test_only_searches_that_are_said_to_ask_for_the_gradient(search: str, monkey
     assert plan(scene, settings)["gradient of f"].runs == (r.WITH_GRADIENT in asked)
 
 
+@pytest.mark.parametrize("proof", [False, True])
+def test_a_miss_is_proven_where_that_is_planned(proof: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[str] = []
+    scene, settings = lattice(), Settings(search="safe", proof=proof)
+    ready, kernel = prepare.prepared(scene, settings).tracer, searcher(check(scene, settings)).py_func
+    cells = prepare.surfels(scene, settings).cells
+    python(monkeypatch, [], safe, probe)
+    monkeypatch.setattr(probe, "evaluate_at", lambda _, *args: tangent.tangent_surfel(*args))
+    for module in (safe, probe):
+        if hasattr(module, "surfels_near"):
+            monkeypatch.setattr(module, "surfels_near", near_at)
+    counted(monkeypatch, calls, safe, "proven", lambda *args: args[-1])
+    top = cells[np.argmax(cells[:, 2])]
+    start = Start((int(top[0]), int(top[1]), int(top[2])), (0.0, 0.0, 2.0), 5.0, 0.0, 0.0, 1.0, float("nan"), 1)
+    end = served(ready.sites, lambda own, pool: kernel(
+        own, ready.plan.rule, ready.plan.how, ready.plan.bounds, (0.0, 0.0, 1.0), start, np.empty((0, r.LOG_WIDTH)), 0,
+        pool.work, pool.fit))
+    assert end.state == r.BACKGROUND
+    assert plan(scene, settings)["proof of misses"].runs == ("proven" in calls)
+
+
 @pytest.mark.parametrize(("made", "name"), [("lattice", "tangent"), ("cloud", "polynomial"), ("lattice", "cylinder"),
                                              ("lattice", "fill_level")])
 def test_the_shown_normal_takes_the_gradient_where_it_is_planned(made: str, name: str) -> None:
@@ -221,7 +287,7 @@ def test_the_values_are_those_that_rays_are_traced_with(made: str, name: str) ->
     scene, settings = MADE[made](), Settings(**SETTINGS[name])
     used = prepare.prepared(scene, settings).values
     for value in plan(scene, settings).values:
-        expected = arrival(settings, used) if value.name == "tolerance" else getattr(used, RESOLVED[value.name])
+        expected = arrival(used) if value.name == "tolerance" else getattr(used, RESOLVED[value.name])
         assert value.value == expected and value.origin
 
 

@@ -34,7 +34,7 @@ def make_hits(t: list[float], normal: list[tuple[float, float, float]] | Array, 
     zeros = np.zeros(n, np.int32)
     return Hits(origin, direction, at, origin + at[:, None] * direction, np.array(normal, dtype=float), at * 0, at * 0,
                 zeros, zeros, zeros, zeros, zeros, at * np.nan, np.array([STATUS[name] for name in names], np.uint8),
-                Settings())
+                zeros, zeros, zeros, Settings())
 
 
 def one(t: float, normal: tuple[float, float, float], exact_t: float,

@@ -35,7 +35,8 @@ def make_hits(normals: list[tuple[float, float, float]], size: tuple[int, int] |
     status = np.where(hit, STATUS["converged"], STATUS["background"]).astype(np.uint8)
     hits = Hits(origin=origin, direction=direction, t=t, point=origin + t[:, None] * direction, normal=normal,
                 energy=t * 0, off_centre=t * 0.01, iterations=ones, evaluations=ones, neighbours=ones, cells=ones,
-                lowered=0 * ones, gap=np.full(len(ones), np.nan), status=status, settings=Settings(), size=size)
+                lowered=0 * ones, gap=np.full(len(ones), np.nan), status=status, starts=ones,
+                eigenvectors=0 * ones, gradients=0 * ones, settings=Settings(), size=size)
     return dataclasses.replace(hits, **columns)  # type: ignore[arg-type]
 
 

@@ -23,8 +23,9 @@ def hits():
         off_centre=nothing[:, 0], iterations=np.array([2, 2, 4, 7, 0, 0], np.int32),
         evaluations=np.array([2, 5, 4, 23, 0, 0], np.int32), neighbours=np.array([20, 50, 40, 230, 0, 0], np.int32),
         cells=np.array([1, 3, 3, 9, 2, 0], np.int32), lowered=np.array([0, 2, 0, 1, 0, 0], np.int32), gap=nothing[:, 0],
-        status=np.array([STATUS[n] for n in names], np.uint8),
-        settings=Settings(), prep_s=0.5, ray_s=0.25)
+        status=np.array([STATUS[n] for n in names], np.uint8), starts=np.array([1, 2, 1, 3, 0, 0], np.int32),
+        eigenvectors=np.zeros(6, np.int32), gradients=np.zeros(6, np.int32), settings=Settings(), prep_s=0.5,
+        ray_s=0.25)
 
 
 def test_counts_and_means(hits):

@@ -151,7 +151,7 @@ def starts(ready: prepare.Prepared, cells: records.Cells, origin: Vector, direct
     plan = ready.tracer.plan
     fail = plan._replace(how=plan.how._replace(cap=1, arrived=0.0), bounds=plan.bounds._replace(off_centre=0.0))
     rows = np.empty((200, records.LOG_WIDTH))
-    written = traced(LatticeTracer(cells, fail), origin, direction, rows)[1]
+    written = traced(LatticeTracer(lambda: cells, fail), origin, direction, rows)[1]
     logged = rows[:written, [records.T, records.CELL_I, records.CELL_J, records.CELL_K]]
     return [(t, i, j, k) for t, i, j, k in logged.tolist()]
 
@@ -191,7 +191,8 @@ def test_skipping_visits_fewer_cells() -> None:
     fast = lattice_of(ready)
     slow = fast._replace(empty=np.minimum(fast.empty, 1).astype(np.uint8))
     o, d = (-5.0, 15.2, 16.3), (1.0, 0.0, 0.0)
-    fast_end, slow_end = (traced(LatticeTracer(cells, ready.tracer.plan), o, d)[0] for cells in (fast, slow))
+    fast_end, slow_end = (traced(LatticeTracer(lambda: cells, ready.tracer.plan), o, d)[0]  # noqa: B023
+                          for cells in (fast, slow))
     assert fast_end["status"] == records.CONVERGED
     for name in fast_end.keys() - {"cells"}:
         np.testing.assert_array_equal(fast_end[name], slow_end[name])

@@ -40,12 +40,12 @@ class SearchSettings:
              "even steps to a change of sign, then a straight line. safe: short steps with f and its slope, so that "
              "no hit is missed where f is continuous. centres: the plane or polynomial at the cell's or ball's centre "
              "alone. auto: iterate, or minimise for an energy.")
-    tolerance: float = parameter(
-        "number", 0.125, low=0, high=10, step=0.005, unit="h", group="Search", label="Tolerance",
+    tolerance: float | str = parameter(
+        "number", 0.125, choices=("auto",), low=0, high=10, step=0.005, unit="h", group="Search", label="Tolerance",
         stage="rays", source="[T 2.14]", when=lambda s: searches(s) and s.search not in ("march", "centres"),
         needs=f"{_SEARCHED}, and a search other than march and centres",
         help="A ray has arrived when its next step is shorter than this; it counts in radii where the radius is "
-             "below h.")
+             "below h. auto: a tenth of what can be seen, a pixel or the surface's own error, whichever is larger.")
     max_iterations: int = parameter(
         "integer", 20, low=1, high=10_000, step=1, group="Search", label="Iterations a start", stage="rays",
         source="[T §2.4.5, footnote 14]", when=_steps, needs=_STEPPED,

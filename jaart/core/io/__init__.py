@@ -14,6 +14,7 @@ from jaart.core.io.values import check_frame
 from jaart.core.resources import resource
 from jaart.core.samples import bumpy_sphere
 from jaart.core.scene import Scene
+from jaart.core.telling import doing
 
 Reader = Callable[[Path, int | None], Scene]
 
@@ -50,7 +51,8 @@ def load(source: str | PathLike[str], frame: int | None = None) -> Scene:
     except KeyError:
         raise FileError(path, f"unknown kind of file {path.suffix!r}; expected {', '.join(READERS)}") from None
     try:
-        return reader(path, frame)
+        with doing(f"reading {path.name}"):
+            return reader(path, frame)
     except OSError as error:
         raise FileError(path, f"cannot be read: {error.strerror or error}") from None
     except MemoryError:

@@ -17,6 +17,7 @@ from jaart.core.kernels import records as r
 from jaart.core.kernels.address import floats_at, load
 from jaart.core.kernels.blocks import FITTED, GATHERER, HEAP, KEPT, MORE, is_short, kept_in, publish
 from jaart.core.kernels.call import evaluate_at, gather_at, search_from
+from jaart.core.kernels.counts import forget_counts, write_counts
 from jaart.core.kernels.guess import GUESS_WIDTH, STATE, is_near, meets, show_centre, write_guess
 from jaart.core.kernels.heap import pop, push
 from jaart.core.kernels.jit import STRICT, kernel
@@ -129,7 +130,9 @@ def make_ready(sites: Sites, plan: Plan, ball: int, work: Array, fit: Array) -> 
     if pool[MORE] > 0:
         return False
     if pool[KEPT] > 0:
+        taken = fit[r.EIGENVECTORS]  # what is kept for all rays is none's
         v = evaluate_at(plan.how.evaluate, near, (0.0, 0.0, 0.0), plan.rule, r.QUICK, work, fit)
+        fit[r.EIGENVECTORS] = taken
         write_guess(floats_at(kept_in(address), GUESS_WIDTH), v, fit)
     if publish(sites.slots, ball, address, pool) == address and pool[KEPT] > 0:
         pool[FITTED] += 1
@@ -271,7 +274,9 @@ def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array,
         d = (directions[to, 0], directions[to, 1], directions[to, 2])
         end = trace_ball_ray(balls, plan, o, d, log, scratch, fitted, waiting, numbers)
         if is_short(balls.sites.pool):
+            forget_counts(fitted)
             return i, 0
         write_end(out, to, end)
+        write_counts(out, to, fitted)
         written = end.rows
     return pixels.shape[0], written

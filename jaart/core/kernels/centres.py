@@ -30,6 +30,7 @@ def centre_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vect
     """
     centre, row_kept, cost = (0.0, 0.0, 0.0), fit[FIT_SIZE:], _ONE
     size: Any = np.int64(surfels_near(sites, start.cell).size)
+    fit[r.STARTS] += 1.0
     if sites.shape[0] == 0:
         v, cost = read_guess(row_kept, fit), _ONE - _ONE
     else:

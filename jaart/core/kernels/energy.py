@@ -41,7 +41,7 @@ def energy(kind: int, emphasise: int, near: Near, x: Vector, d: Vector, v: Value
 
 @kernel(STRICT)
 def has_slope(kind: int, emphasise: int) -> bool:
-    """Whether `energy_slope` has a closed form."""
+    """Whether `energy_slope` has a closed form; then the energy needs no normal either."""
     return emphasise == 0 and (kind == r.OFF_CENTRE or kind == r.MAHALANOBIS)
 
 

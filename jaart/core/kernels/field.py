@@ -6,7 +6,7 @@ from math import ceil, nan
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.call import evaluate_at
-from jaart.core.kernels.energy import energy
+from jaart.core.kernels.energy import energy, has_slope
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.records import Array, Cell, Near, Plan, Sites, Vector
@@ -16,7 +16,8 @@ from jaart.core.kernels.unowned import unowned, unowned_sites
 @kernel(STRICT)
 def energy_at(near: Near, x: Vector, plan: Plan, d: Vector, work: Array, fit: Array) -> float:
     """The energy at x, relative to its cell's centre; NaN where it is not defined."""
-    v = evaluate_at(plan.how.evaluate, near, x, plan.rule, r.VALUE_ONLY, work, fit)
+    want = r.BARYCENTRE if has_slope(plan.how.energy, plan.how.emphasise) else r.VALUE_ONLY
+    v = evaluate_at(plan.how.evaluate, near, x, plan.rule, want, work, fit)
     if v.state == r.FEW_NEIGHBOURS:
         return nan
     return energy(plan.how.energy, plan.how.emphasise, near, x, d, v, plan.rule.c, work)

@@ -36,10 +36,11 @@ def write_places(near: Near, x: Vector, n: Vector, per_h: float, work: Array) ->
 
 
 @kernel()
-def normal_at(near: Near, x: Vector, rule: Rule, s: float, off: Vector, w: Array) -> Normal:
-    """n(x) from the surfels' normals or from the spread of the points, as the rule says."""
+def normal_at(near: Near, x: Vector, rule: Rule, s: float, off: Vector, w: Array, fit: Array) -> Normal:
+    """n(x) from the surfels' normals or from the spread of the points, as the rule says; fit: counts eigenvectors."""
     if rule.normal == r.SURFEL:
         return surfel_normal(near, s, off, w)
+    fit[r.EIGENVECTORS] += 1.0
     return covariance_normal(near, x, rule, s, off, w)
 
 
@@ -48,7 +49,7 @@ def polynomial(near: Near, x: Vector, rule: Rule, want: int, work: Array, coeffi
     """f(x) = g(0, 0), g fitted to the heights of the surfels above the plane through x with normal n(x) [A 10].
 
     near: surfels; x: relative to their place's centre; want: unused, no closed form of ∇f; work: scratch of 20
-    numbers a surfel, the weights at x stay in the first of them; coefficients: (15,), g's are written there, in h.
+    numbers a surfel, the weights at x stay in the first of them; coefficients: g's are written there, in h.
     Degree 0 is the tangent surface.
     """
     w = work[_THREE * near.size:]
@@ -56,7 +57,7 @@ def polynomial(near: Near, x: Vector, rule: Rule, want: int, work: Array, coeffi
     if not s > 0.0:
         return no_value(r.FEW_NEIGHBOURS, _NOTHING, s, shift)
     off = scaled(offset_sums(near, x, w), 1.0 / s)
-    state, n, _ = normal_at(near, x, rule, s, off, w)
+    state, n, _ = normal_at(near, x, rule, s, off, w, coefficients)
     if state != r.CONTINUE:
         return no_value(state, off, s, shift)
     write_places(near, x, n, 1.0 / rule.h, work)

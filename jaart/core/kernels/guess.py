@@ -10,14 +10,14 @@ import numpy as np
 from jaart.core.kernels import records as r
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.polynomial import line_polynomial
-from jaart.core.kernels.records import FIT_SIZE, Array, Value, Vector
+from jaart.core.kernels.records import COEFFICIENTS, FIT_SIZE, Array, Value, Vector
 from jaart.core.kernels.roots import first_root_above
 from jaart.core.kernels.vectors import dot, frame
 
 _ZERO: Any = np.int64(0)
 #: A row of guesses: state, normal, f, degree, off-centre vector, weight, shift, then the polynomial's coefficients.
 STATE, N_X, N_Y, N_Z, HEIGHT, DEGREE, OFF_X, OFF_Y, OFF_Z, WEIGHT, SHIFT, FIT = range(12)
-GUESS_WIDTH = FIT + FIT_SIZE
+GUESS_WIDTH = FIT + COEFFICIENTS
 
 
 @kernel(STRICT)
@@ -27,14 +27,14 @@ def write_guess(row: Array, v: Value, fit: Array) -> None:
     row[N_X], row[N_Y], row[N_Z] = v.n
     row[OFF_X], row[OFF_Y], row[OFF_Z] = v.off
     row[WEIGHT], row[SHIFT] = v.weight, v.shift
-    for i in range(FIT_SIZE):
+    for i in range(COEFFICIENTS):
         row[FIT + i] = fit[i]
 
 
 @kernel(STRICT)
 def read_guess(row: Array, fit: Array) -> Value:
     """The surface that a row keeps; its polynomial is written into fit."""
-    for i in range(FIT_SIZE):
+    for i in range(COEFFICIENTS):
         fit[i] = row[FIT + i]
     return Value(int(row[STATE]), row[HEIGHT], (row[N_X], row[N_Y], row[N_Z]), (row[OFF_X], row[OFF_Y], row[OFF_Z]),
                  row[WEIGHT], row[SHIFT], (nan, nan, nan), int(row[DEGREE]))

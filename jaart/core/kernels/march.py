@@ -39,6 +39,7 @@ def march_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vecto
     size = int(surfels_near(sites, start.cell).size)
     if size == 0:
         return nothing_found(r.BACKGROUND, 0, 0, 0, 0, nan)
+    fit[r.STARTS] += 1.0
     count = max(int(ceil((start.high - start.low) / how.step)), 1)
     state, looks, refused, lowered, s_before, f_before = r.BACKGROUND, 0, 0, 0, start.low, start.before
     n_before = (nan, nan, nan)

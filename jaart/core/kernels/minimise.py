@@ -10,11 +10,14 @@ from __future__ import annotations
 from math import ceil, nan
 
 from jaart.core.kernels import records as r
+from jaart.core.kernels.call import evaluate_at
+from jaart.core.kernels.energy import has_slope
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.probe import E_SLOPE, look, root_between
 from jaart.core.kernels.records import Array, Bounds, End, Rule, Search, Sites, Start, Vector
 from jaart.core.kernels.stretch import hit_at, nothing_found, state_of
+from jaart.core.kernels.vectors import along
 from jaart.core.kernels.weigh import fineness
 
 #: Length of the steps, in h.
@@ -32,9 +35,12 @@ def minimise_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Ve
     size = int(surfels_near(sites, start.cell).size)
     if size == 0:
         return nothing_found(r.BACKGROUND, 0, 0, 0, 0, nan)
+    fit[r.STARTS] += 1.0
     count = max(int(ceil((start.high - start.low) / (_STEP * fineness(rule.weight, rule.h)))), 1)
     a = look(E_SLOPE, sites, rule, how, d, start, start.low, rows, row, work, fit)
-    state, looks, evaluations, falling = state_of(a.value, r.BACKGROUND), 1, a.evaluations, start.before < 0.0
+    blind = has_slope(how.energy, how.emphasise)  # looks have no normal, and so no end for the want of one
+    state, looks, evaluations, falling = r.BACKGROUND, 1, a.evaluations, start.before < 0.0
+    state = state if blind else state_of(a.value, state)
     for i in range(1, count + 1):
         s = start.low + (start.high - start.low) * (i / count)
         b = look(E_SLOPE, sites, rule, how, d, start, s, rows, row + looks, work, fit)
@@ -46,10 +52,14 @@ def minimise_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Ve
         elif i == 1:
             found = falling and a.q >= 0.0
         if found and best.e < how.level:
-            end = hit_at(r.CONVERGED, sites, rule, how, bounds, d, start, best.s, best.value, best.e, looks,
-                         evaluations, evaluations * size, 0, work, fit)
+            v = best.value
+            if blind:
+                near, x = surfels_near(sites, start.cell), along(start.base, d, best.s)
+                v, evaluations = evaluate_at(how.evaluate, near, x, rule, r.VALUE_ONLY, work, fit), evaluations + 1
+            end = hit_at(r.CONVERGED, sites, rule, how, bounds, d, start, best.s, v, best.e, looks, evaluations,
+                         evaluations * size, 0, work, fit)
             if end.state == r.CONVERGED:
                 return end
             state = end.state
-        state, a = state_of(b.value, state), b
+        state, a = state if blind else state_of(b.value, state), b
     return nothing_found(state, looks, evaluations, evaluations * size, 0, a.q)

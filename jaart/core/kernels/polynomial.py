@@ -13,11 +13,9 @@ import numpy as np
 
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.least_squares import factorise, rank_ratio, substitute
-from jaart.core.kernels.records import Array, Unsigned, Vector
+from jaart.core.kernels.records import COEFFICIENTS, Array, Unsigned, Vector
 from jaart.core.kernels.roots import Quartic
 
-#: Coefficients of a polynomial of degree 4.
-COEFFICIENTS = 15
 #: Columns of the scratch array: u, v, height, weight, then the system.
 SCRATCH_COLUMNS = 4 + COEFFICIENTS + 1
 #: A point of a smaller share of the largest weight does not count.

@@ -56,6 +56,8 @@ def look(what: int, sites: Sites, rule: Rule, how: Search, d: Vector, start: Sta
     """Look at the surface from the ray's point at s with the surfels of the start's place, and log it."""
     near, x = surfels_near(sites, start.cell), along(start.base, d, s)
     want = r.WITH_GRADIENT if what == F_SLOPE else r.VALUE_ONLY
+    if what == E_SLOPE and rows.shape[0] == 0 and has_slope(how.energy, how.emphasise):
+        want = r.BARYCENTRE
     v = evaluate_at(how.evaluate, near, x, rule, want, work, fit)
     slope, e, q, evaluations = nan, nan, v.f, 1
     if v.state == r.CONTINUE or v.state == r.UNDEFINED_NORMAL:

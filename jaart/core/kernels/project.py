@@ -41,7 +41,7 @@ def projection(near: Near, x: Vector, rule: Rule, want: int, work: Array, coeffi
     if not s > 0.0:
         return no_value(r.FEW_NEIGHBOURS, _NOTHING, s, shift)
     off = scaled(offset_sums(near, x, kept), 1.0 / s)
-    state, n0, _ = normal_at(near, x, rule, s, off, kept)
+    state, n0, _ = normal_at(near, x, rule, s, off, kept, coefficients)
     if state != r.CONTINUE:
         return no_value(state, off, s, shift)
     state, t, n = reference_plane(near, x, dot(n0, off) / rule.h, n0, rule, w)

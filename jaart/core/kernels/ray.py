@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from jaart.core.kernels import records as r
 from jaart.core.kernels.blocks import is_short
 from jaart.core.kernels.call import search_from
+from jaart.core.kernels.counts import forget_counts, write_counts
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.leaving import FARTHEST, Leave, counting, least_of_energies, leave
 from jaart.core.kernels.log import end_log
@@ -215,7 +216,9 @@ def trace_rays(cells: Cells, plan: Plan, origins: Array, directions: Array, begi
         for lane in range(count):
             end = end_in(cells, plan, p, lane, log, scratch, fitted)
             if is_short(cells.sites.pool):
+                forget_counts(fitted)
                 return first + int(lane), 0
             write_end(out, pixels[first + int(lane)], end)
+            write_counts(out, pixels[first + int(lane)], fitted)
             written = end.rows
     return pixels.shape[0], written

@@ -260,6 +260,9 @@ class Out(NamedTuple):
     lowered: NDArray[np.int32]
     gap: Array
     status: NDArray[np.uint8]
+    starts: NDArray[np.int32]
+    eigenvectors: NDArray[np.int32]
+    gradients: NDArray[np.int32]
 
 
 #: Columns of a step's row in the log.
@@ -277,7 +280,10 @@ SURFEL, COVARIANCE, COVARIANCE_AT_X = range(3)
 ITERATE, SECANT, NEWTON, MINIMISE, MARCH, SAFE, CENTRES = range(7)
 TANGENT_STEP, OFF_CENTRE, MAHALANOBIS, ANGLE, TANGENT = range(5)
 
-#: Values of `want`: the gradient costs a pass of its own; a quick value may leave the weights unwritten.
-VALUE_ONLY, WITH_GRADIENT, QUICK = range(3)
-#: Room for a fitted polynomial: its 15 coefficients.
-FIT_SIZE = 15
+#: Values of `want`: the gradient costs a pass of its own; a quick value may leave the weights unwritten; for a least
+#: energy the barycentre alone may do, with no normal and no f.
+VALUE_ONLY, WITH_GRADIENT, QUICK, BARYCENTRE = range(4)
+#: Coefficients of a fitted polynomial, and room for them with what a ray took so far behind them, see `counts`.
+COEFFICIENTS = 15
+EIGENVECTORS, GRADIENTS, STARTS = range(COEFFICIENTS, COEFFICIENTS + 3)
+FIT_SIZE = COEFFICIENTS + 3

@@ -109,6 +109,7 @@ def safe_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
     surfels = int(surfels_near(sites, start.cell).size)
     if surfels == 0:
         return nothing_found(r.BACKGROUND, 0, 0, 0, 0, nan)
+    fit[r.STARTS] += 1.0
     count = max(int(ceil((start.high - start.low) / (_STEP * fineness(rule.weight, rule.h)))), 1)
     a = look(F_SLOPE, sites, rule, how, d, start, start.low, rows, row, work, fit)
     end = nothing_found(r.BACKGROUND, 1, a.evaluations, a.evaluations * surfels, fewer(a, rule), a.f)

@@ -85,6 +85,7 @@ def step_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
     spent = Spent(_NONE, _NONE, _NONE, _NONE)
     want = r.WITH_GRADIENT if how.kind == r.NEWTON else r.QUICK
     cell, x = start.cell, along(start.base, d, s)
+    fit[r.STARTS] += 1.0
     for done in range(how.cap):
         near = surfels_near(sites, cell)
         if near.size == 0:

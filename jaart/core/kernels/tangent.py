@@ -17,7 +17,7 @@ _NOTHING = (nan, nan, nan)
 
 @kernel()
 def no_value(state: int, off: Vector, s: float, shift: float) -> Value:
-    """What there is where no surfel counts, or no normal is defined."""
+    """What there is where no surfel counts, no normal is defined, or nobody asks for it."""
     return Value(state, nan, _NOTHING, off, s, shift, _NOTHING, 0)
 
 
@@ -25,8 +25,8 @@ def no_value(state: int, off: Vector, s: float, shift: float) -> Value:
 def tangent_surfel(near: Near, x: Vector, rule: Rule, want: int, w: Array, fit: Array) -> Value:
     """f(x) with the average of the surfels' normals [T 2.13].
 
-    near: surfels; x: relative to their place's centre; want: VALUE_ONLY, WITH_GRADIENT or QUICK; w: (2·N,) for the
-    weights; fit: unused. ∇f = (2/h²) Σθ_N (n_i·turn + n·(p_i - a))(p_i - a) - n for the Gaussian.
+    near: surfels; x: relative to their place's centre; one of VALUE_ONLY … BARYCENTRE; w: (2·N,) for the
+    weights; fit: for its counts alone. ∇f = (2/h²) Σθ_N (n_i·turn + n·(p_i - a))(p_i - a) - n for the Gaussian.
     """
     if want == r.QUICK and rule.weight == r.GAUSSIAN and rule.k == 0 and rule.reach == inf:
         s, q, m = gaussian_sums(near, x, rule.h)
@@ -38,11 +38,14 @@ def tangent_surfel(near: Near, x: Vector, rule: Rule, want: int, w: Array, fit: 
     if not s > 0.0:
         return no_value(r.FEW_NEIGHBOURS, _NOTHING, s, shift)
     off = scaled(offset_sums(near, x, w), 1.0 / s)
+    if want == r.BARYCENTRE:
+        return no_value(r.CONTINUE, off, s, shift)
     state, n, turn = surfel_normal(near, s, off, w)
     if state != r.CONTINUE:
         return no_value(state, off, s, shift)
     gradient = _NOTHING
     if want == r.WITH_GRADIENT:
+        fit[r.GRADIENTS] += 1.0
         b, g = surfel_gradient_sums(near, x, rule, n, off, turn, w)
         gradient = ((g[0] + b * off[0]) / s - n[0], (g[1] + b * off[1]) / s - n[1], (g[2] + b * off[2]) / s - n[2])
     return Value(state, dot(n, off), n, off, s, shift, gradient, 0)
@@ -59,11 +62,15 @@ def tangent_covariance(near: Near, x: Vector, rule: Rule, want: int, w: Array, f
     if not s > 0.0:
         return no_value(r.FEW_NEIGHBOURS, _NOTHING, s, shift)
     off = scaled(offset_sums(near, x, w), 1.0 / s)
+    if want == r.BARYCENTRE:
+        return no_value(r.CONTINUE, off, s, shift)
+    fit[r.EIGENVECTORS] += 1.0
     state, n, turn = covariance_normal(near, x, rule, s, off, w)
     if state != r.CONTINUE:
         return no_value(state, off, s, shift)
     f, gradient = dot(n, off), _NOTHING
     if want == r.WITH_GRADIENT:
+        fit[r.GRADIENTS] += 1.0
         about_x = rule.normal == r.COVARIANCE_AT_X
         centre = (0.0, 0.0, 0.0) if about_x else off
         b, g = covariance_gradient_sums(near, x, rule, n, off, centre, turn, w)
