@@ -9,7 +9,6 @@ import numpy as np
 from benchmarks.cloud_normals import oriented, spacing
 from benchmarks.contest import Absent, Contestant, why_absent
 from benchmarks.peers_embree import Meshed, Triangles
-from benchmarks.vectors import unit
 from jaart.core.scene import Scene
 
 #: Cubes along a spacing of the cloud: where they are wider, the surface ends between their corners.
@@ -39,5 +38,5 @@ def triangles_of(scene: Scene) -> Triangles:
     meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=points, v_normals_matrix=normals))
     meshes.generate_marching_cubes_apss(resolution=resolution, filterscale=width)
     mesh = meshes.current_mesh()
-    return Triangles(mesh.vertex_matrix(), mesh.face_matrix(), unit(mesh.vertex_normal_matrix()),
+    return Triangles(mesh.vertex_matrix(), mesh.face_matrix(), mesh.vertex_normal_matrix(),
                      f"{resolution} cubes along an edge, filter scale {width:.1f}, {note}")

@@ -56,13 +56,13 @@ def timed(work: Callable[[], object]) -> float:
 def in_turns(works: Mapping[str, Callable[[], T]], most: int, seconds: float) -> dict[str, list[T]]:
     """What each work gave, in rounds of one call of each.
 
-    A work is called `most` times, but no more once its calls have taken so many seconds: a slow one drops out.
+    A work is called once, and up to `most` times until its calls have taken so many seconds: a slow one drops out.
     """
     given: dict[str, list[T]] = {name: [] for name in works}
     spent = dict.fromkeys(works, 0.0)
     for _ in range(most):
         for name, work in works.items():
-            if spent[name] < seconds:
+            if not given[name] or spent[name] < seconds:
                 spent[name] += timed(lambda name=name, work=work: given[name].append(work()))
     return given
 

@@ -1,7 +1,8 @@
-"""How quickly the window answers: start, stall of its thread, slider to pixels, click to panels.
+"""How quickly the window answers: start, stalls of its thread, slider to pictures, click to each panel.
 
 Slider and click in the standard model at 64³, 512×512 pixels. Run with a display, or under xvfb-run:
-python benchmarks/window.py. Prints medians over several runs; with the word "quick" without the starts.
+python benchmarks/window.py; with the word "quick" without the starts. Prints medians over several runs, with the
+spread, and the parts of each answer. "Of the window" is what the window's own thread computed, whatever else runs.
 """
 
 from __future__ import annotations
@@ -11,13 +12,15 @@ import statistics
 import subprocess
 import sys
 import time
+from collections import defaultdict
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-STARTS, DRAGS, CLICKS = 5, 20, 10
-#: Seconds that the rays of each dragged picture took.
-RAYS: list[float] = []
+STARTS, DRAGS, CLICKS = 7, 21, 11
+#: Beside "best", with which the window opens.
+PRESET = "thesis"
+PANELS = {"2D projector": "2D projector", "Energy along the ray": "energies"}
 
 
 def main() -> None:
@@ -26,23 +29,31 @@ def main() -> None:
     window, stalls = opened()
     report("longest stall while panels load", [max(stalls)], "ms")
     show(window, "standard")
-    stalls.clear()
-    drags = [drag(window, k) for k in range(DRAGS)]
-    for name in drags[0]:
-        report(f"slider to {name}", [1000 * times[name] for times in drags], "ms")
-    report("of that, rays", [1000 * seconds for seconds in RAYS], "ms")
-    clicks = [click(window, k) for k in range(CLICKS)]
-    for name in clicks[0]:
-        report(f"click to {name}", [1000 * times[name] for times in clicks], "ms")
-    report("click to all ray panels", [1000 * max(times.values()) for times in clicks], "ms")
+    for name in ("best", PRESET):
+        window.model.choose_preset(name)
+        settle_all(window)
+        stalls.clear()
+        report_parts(f"slider of h, preset {name}", [slid(window, turn) for turn in range(DRAGS)])
+    report_parts("click on a pixel", [clicked(window, turn) for turn in range(CLICKS)])
     report("longest stall in use", [max(stalls)], "ms")
     window.close()
 
 
 def report(name: str, values: list[float], unit: str, digits: int = 0) -> None:
     ordered = sorted(values)
-    spread = f"   (p95 {ordered[int(0.95 * (len(ordered) - 1))]:.{digits}f})" if len(values) > 1 else ""
-    print(f"{name:36s} {statistics.median(values):8.{digits}f} {unit}{spread}", flush=True)
+    spread = f"   ({ordered[0]:.{digits}f} … {ordered[-1]:.{digits}f})" if len(values) > 1 else ""
+    print(f"{name:44s} {statistics.median(values):8.{digits}f} {unit}{spread}", flush=True)
+
+
+def report_parts(name: str, runs: list[dict[str, float]]) -> None:
+    """A line for each part: a time since the beginning, or of the part alone where its name begins with a dash."""
+    print(name)
+    parts = defaultdict(list)
+    for run in runs:
+        for part, value in run.items():
+            parts[part].append(value)
+    for part, values in parts.items():
+        report(f"    {part}", values, "ms", 1)
 
 
 def start_in_process() -> float:
@@ -57,6 +68,7 @@ def first_paint() -> None:
     from jaart.gui.libraries import check
 
     check()
+    sys.setswitchinterval(0.001)
     from qtpy.QtWidgets import QApplication
 
     from jaart.gui.main_window import MainWindow
@@ -113,55 +125,88 @@ def show(window, scene: str) -> None:
     window.model.set_settings(window.model.settings.replace(raster=64))
     wait(lambda: window.model.idle)
     window.model.pick(230, 300)
-    wait(lambda: window.model.idle)
-    settle(1.0)
+    settle_all(window)
 
 
-def drag(window, turn: int) -> dict[str, float]:
-    """Seconds from a move of the slider of h to the first paint of a picture made with it, and of the full one."""
+def slid(window, turn: int) -> dict[str, float]:
+    """What follows a move of the slider of h, up to the full picture."""
     from qtpy.QtWidgets import QApplication
 
     model, slider = window.model, window.docks["Parameters"].panel.rows["h"].slider
-    target = slider.value() + (1 if turn % 20 < 10 else -1)
-    current = lambda: model.hits is not None and model.hits.settings == model.settings  # noqa: E731
-    seen = watch_paints(QApplication.instance(), {"first pixels": window.view}, current)
-    full = watch_paints(QApplication.instance(), {"full picture": window.view}, lambda: current() and model.complete)
-    begin = time.perf_counter()
-    slider.setValue(target)
-    wait(lambda: seen and full)
-    seen.stop()
-    full.stop()
-    RAYS.append(model.hits.ray_s)
-    wait(lambda: model.idle)
-    settle()
-    return {name: at - begin for name, at in {**seen, **full}.items()}
+    clock, first = Clock(), []
+
+    def made() -> None:
+        if model.hits.settings == model.settings and not first:
+            first.append(model.hits)
+            clock.mark("coarse picture in the window")
+
+    model.hits_changed.connect(made)
+    coarse = watch_paints(QApplication.instance(), {"view": window.view}, lambda: bool(first))
+    full = watch_paints(QApplication.instance(), {"view": window.view}, lambda: bool(first) and model.complete)
+    slider.setValue(slider.value() + (1 if turn % 20 < 10 else -1))
+    clock.mark("panels told")
+    wait(lambda: "view" in full)
+    model.hits_changed.disconnect(made)
+    for seen in (coarse, full):
+        seen.stop()
+    clock.took["- prepared"] = 1000 * first[0].prep_s
+    clock.took["- coarse rays"] = 1000 * first[0].ray_s
+    clock.mark("coarse picture painted", coarse["view"])
+    clock.took["- all rays"] = 1000 * model.hits.ray_s
+    clock.mark("full picture painted", full["view"])
+    clock.end()
+    settle_all(window)
+    return clock.took
 
 
-def click(window, turn: int) -> dict[str, float]:
-    """Seconds from a click on a pixel to the first paint of each of the ray's panels."""
+def clicked(window, turn: int) -> dict[str, float]:
+    """What follows a click on a pixel, up to the paint of the last of the ray's panels."""
     from pyvistaqt import QtInteractor
     from qtpy.QtCore import Qt
     from qtpy.QtTest import QTest
     from qtpy.QtWidgets import QApplication
 
-    model = window.model
-    names = ("2D projector", "Energy along the ray")
-    before = model.trace
-    seen = watch_paints(QApplication.instance(), {name: window.docks[name] for name in names},
+    model, before, begun = window.model, window.model.trace, []
+    seen = watch_paints(QApplication.instance(), {name: window.docks[title] for title, name in PANELS.items()},
                         lambda: model.trace is not before)
     space = window.docks["3D ray analyzer"].panel.findChild(QtInteractor).render_window
-    observer = space.AddObserver("EndEvent", lambda *_: model.trace is not before
-                                 and seen.setdefault("3D ray analyzer", time.perf_counter()))
+    observers = [space.AddObserver("StartEvent", lambda *_: begun.append(time.perf_counter())),
+                 space.AddObserver("EndEvent", lambda *_: model.trace is not before and
+                                   seen.setdefault("3D analyzer", time.perf_counter()))]
     met = model.hits.hit.nonzero()[0]
     pixel = int(met[(2 * turn + 1) * len(met) // (2 * CLICKS)])
     place = window.view.place_of((pixel % model.size[0], pixel // model.size[0])).toPoint()
-    begin = time.perf_counter()
+    clock = Clock()
     QTest.mouseClick(window.view, Qt.MouseButton.LeftButton, pos=place)
-    wait(lambda: len(seen) == len(names) + 1)
+    wait(lambda: model.trace is not before)
+    clock.mark("ray traced")
+    wait(lambda: len(seen) == len(PANELS) + 1)
+    space_begun = max(at for at in begun if at < seen["3D analyzer"])
+    clock.took["- rendering in space"] = 1000 * (seen["3D analyzer"] - space_begun)
+    for name, when in sorted(seen.items(), key=lambda item: item[1]):
+        clock.mark(f"{name} painted", when)
+    clock.mark("last panel painted", max(seen.values()))
+    clock.end()
     seen.stop()
-    space.RemoveObserver(observer)
-    settle()
-    return {name: seen[name] - begin for name in (*names, "3D ray analyzer")}
+    for observer in observers:
+        space.RemoveObserver(observer)
+    settle_all(window)
+    return clock.took
+
+
+class Clock:
+    """Milliseconds since it was made, by name."""
+
+    def __init__(self) -> None:
+        self.begin, self.thread, self.took = time.perf_counter(), time.thread_time(), {}
+
+    def mark(self, name: str, when: float | None = None) -> None:
+        """Note a time, now when None."""
+        self.took[name] = 1000 * ((time.perf_counter() if when is None else when) - self.begin)
+
+    def end(self) -> None:
+        """Note what the window's own thread computed."""
+        self.took["- of the window"] = 1000 * (time.thread_time() - self.thread)
 
 
 def watch_paints(app, widgets, ready=lambda: True):
@@ -196,6 +241,14 @@ def wait(done, patience: float = 60.0) -> None:
     timer.start()
     if loop.exec():
         raise TimeoutError(f"nothing was painted in {patience:g} s")
+
+
+def settle_all(window) -> None:
+    """Let everything be computed and painted, statistics last."""
+    wait(lambda: window.model.idle)
+    settle()
+    wait(lambda: window.model.idle and not any(getattr(dock.panel, "pending", False) for dock in window.docks.values()))
+    settle(0.1)
 
 
 def settle(seconds: float = 0.3) -> None:

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 #: Programs in the order of their colours, and the field of the theme that each has.
-COLOURS = ("query", "hit", "barycentre", "next", "plane", "full_cell")
-MARKS = "os^vD<"
+COLOURS = ("query", "hit", "barycentre", "next", "plane", "full_cell", "ray")
+MARKS = "os^vD<>"
 
 
 def work_precision(rows: Iterable[Row], theme: str = "light") -> Figure:
@@ -63,8 +63,10 @@ def _dress(axes: Axes, colours: Theme, xlabel: str, ylabel: str) -> None:
     from matplotlib.ticker import LogLocator, NullLocator
 
     axes.set_facecolor(colours.face)
+    axes.margins(0.12)
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=8))
+        low, high = axis.get_view_interval()
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 60 * low else (1.0, 3.0), numticks=8))
         axis.set_major_formatter("{x:g}")
         axis.set_minor_locator(NullLocator())
     for side, spine in axes.spines.items():
@@ -74,14 +76,13 @@ def _dress(axes: Axes, colours: Theme, xlabel: str, ylabel: str) -> None:
                      width=0.7, pad=2)
     axes.grid(color=colours.grid, linewidth=0.5)
     axes.set_axisbelow(True)
-    axes.margins(0.12)
     axes.set_xlabel(xlabel, color=colours.text, fontsize=style.TEXT)
     axes.set_ylabel(ylabel, color=colours.text, fontsize=style.TEXT)
 
 
 def _scenes(rows: list[Row], sizes: list[str]) -> str:
     """What the points of a panel stand for."""
-    scenes = list(dict.fromkeys(row.scene for row in rows))
+    scenes = list(dict.fromkeys(row.scene.partition(" ")[2] for row in rows))
     return f"{', '.join(scenes)} at {', '.join(sizes)}" if scenes else ""
 
 

@@ -57,7 +57,7 @@ class Bar:
         if self._bar is not None and bool(self._bar.total) != bool(total):
             self._clear()
         if self._bar is None:
-            self._bar = tqdm(desc=what, total=total or None, unit_scale=True, leave=False,
+            self._bar = tqdm(desc=what, total=total or None, unit_scale=True, leave=False, delay=TICK,
                              bar_format=None if total else _ENDLESS)
             self._bar.start_t -= time.monotonic() - self._since
         self._bar.total, self._bar.n = total or None, done

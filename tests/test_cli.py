@@ -238,6 +238,7 @@ def test_hits_hold_every_array_and_no_picture_is_written_beside_them():
     assert [p.name for p in Path().iterdir()] == ["h.npz"]
     hits = np.load("h.npz")
     assert set(hits) == {"origin", "direction", "hit", "t", "point", "normal", "status", "status_names", "off_centre",
+                         "starts", "eigenvectors", "gradients", "gathered", "fits",
                          "energy", "iterations", "evaluations", "neighbours", "cells", "lowered", "gap",
                          "shading_normal", "prep_s", "ray_s"}
     assert hits["hit"].dtype == bool and hits["status"].dtype == np.uint8

@@ -49,6 +49,12 @@ def test_the_package_alone_loads_nothing_heavy(tmp_path):
     assert loaded.isdisjoint({*HEAVY, "numpy", "numba", "scipy", "typer"})
 
 
+def test_the_package_alone_loads_one_module(tmp_path):
+    code = "import sys, importlib, typing; before = set(sys.modules); import jaart; " \
+           "assert set(sys.modules) - before == {'jaart'}, set(sys.modules) - before"
+    assert "jaart" in loaded_by(code, tmp_path)
+
+
 def test_kernels_import_math_numpy_numba_and_each_other():
     files = sorted((ROOT / "jaart/core/kernels").glob("*.py"))
     assert len(files) > 5

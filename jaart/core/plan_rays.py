@@ -18,6 +18,8 @@ from jaart.core.stage import Stage, stage
 
 #: Searches that go by the slope of f.
 SLOPED = ("newton", "safe")
+#: Energies that no normal of the average enters, unless they are emphasised by the angle.
+BLIND = ("off_centre", "mahalanobis")
 #: Each bound of a hit: its stage and setting, whether it asks for anything, and what it takes to know.
 BOUNDS: tuple[tuple[str, str, Callable[[Bounds], bool], str], ...] = (
     ("off-centre bound", "max_off_centre", lambda b: b.off_centre < math.inf, "the off-centre value is known anyway"),
@@ -50,24 +52,38 @@ def _traversal(scene: Scene, settings: Settings, values: Chosen) -> Stage:
 def summed(settings: Settings, values: Chosen, rule: Rule) -> dict[str, bool]:
     """Which sums over the surfels an evaluation takes: weights, normals, covariance and gradient."""
     weighs = meaning.weighs(values)
+    normal = weighs and not (_blind(settings, values) and values.method in MESHES)
     return {"weights": weighs,
-            "normals": weighs and (rule.normal == r.SURFEL or rule.oriented == 1),
-            "covariance": weighs and rule.normal != r.SURFEL,
+            "normals": normal and (rule.normal == r.SURFEL or rule.oriented == 1),
+            "covariance": normal and rule.normal != r.SURFEL,
             "gradient": searches(values) and (values.search in SLOPED or meaning.shows_gradient(settings))}
+
+
+def _blind(settings: Settings, values: Chosen) -> bool:
+    """Whether an energy is asked for that no normal enters, so that hits alone need one."""
+    energy = settings.energy if values.method == "isosurface" else values.method
+    asked = values.method == "isosurface" or (searches(values) and values.search == "minimise")
+    return asked and energy in BLIND and not settings.emphasise
 
 
 def _sums(settings: Settings, values: Chosen, rule: Rule) -> tuple[Stage, ...]:
     taken, nothing = summed(settings, values, rule), _unweighed(values)
-    normal = ("method", "normal")
+    mahalanobis = "mahalanobis" in (values.method, settings.energy if values.method == "isosurface" else "")
+    blind, normal = _blind(settings, values), ("method", "normal", "emphasise")
+    unseen = nothing or ("the energy's level needs no normal" if blind and values.method in MESHES else "")
+    where = ", where an energy is least" if blind else ""
     closed = "by differences" if values.method in FITTED else "in closed form"
     return (
         stage("weights and barycentre", taken["weights"], f"{values.weight}, h = {values.h:.4g}", nothing,
               "method", "weight", "h"),
         stage("sum of normals", taken["normals"],
-              "n(x) is the surfels' average" if rule.normal == r.SURFEL else "the eigenvector is turned to their side",
-              nothing or "n(x) comes from the points alone", *normal),
-        stage("covariance and eigenvector", taken["covariance"], "n(x) is the direction of least spread",
-              nothing or "n(x) is the average of the surfels' normals", *normal),
+              f"n(x) is the surfels' average{where}" if rule.normal == r.SURFEL
+              else f"the eigenvector is turned to their side{where}",
+              unseen or "n(x) comes from the points alone", *normal),
+        stage("covariance and eigenvector", taken["covariance"], f"n(x) is the direction of least spread{where}",
+              unseen or "n(x) is the average of the surfels' normals", *normal),
+        stage("Mahalanobis sum", mahalanobis, "the mean distance to the surfels' planes is minimised",
+              "no energy asks for it", "method", "energy", "mahalanobis_c"),
         stage("gradient of f", taken["gradient"], f"{_who(settings, values)} it, {closed}",
               "neither search nor shown normal takes it" if searches(values) else "no ray is searched",
               "method", "search", "shading_normal"))

@@ -2,40 +2,57 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from threading import Event
+
 import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core import extents, prepare, shapes
+from jaart.core.errors import Cancelled
 from jaart.core.records import STATUS, Hits, Quality
 from jaart.core.scene import Scene, frozen
-from jaart.core.telling import doing
+from jaart.core.telling import doing, tell
 
 Array = NDArray[np.float64]
 
 #: A hit farther than this (cells, spacings of a cloud) from the exact one is a distance miss.
 TOO_FAR = 1.0
+#: So many rays are measured between two looks at whether to stop.
+RAYS_AT_ONCE = 1 << 14
 #: A solid that ends on the lattice's faces is not cut off: cells that rounding may add.
 TOUCH = 1e-6
 
 
 def known(scene: Scene) -> bool:
     """Whether a scene's surface is known exactly, by its solids or as it is."""
-    return scene.model is not None or scene.exact is not None
+    return scene.known
 
 
 @doing("errors against the exact surface")
-def quality(hits: Hits, scene: Scene) -> Quality | None:
+def quality(hits: Hits, scene: Scene, cancel: Event | None = None,
+            progress: Callable[[int, int], None] | None = None) -> Quality | None:
     """The errors of hits against the scene's exact surface, or None when nobody knows it.
+
+    cancel: set it to stop; progress(done, all rays) is called now and then.
 
     Each false hit, false miss and distance miss adds a penalty of 1 in place of its error. Normals are
     turned to the viewer first. Rays that cannot be traced (bad_ray), and those that meet a solid where the
     lattice cuts it off, are left out. Lengths are in cells, of a cloud in mean spacings.
+    Raises Cancelled after cancel was set.
     """
     if not known(scene):
         return None
     good = np.flatnonzero(hits.status != STATUS["bad_ray"])
     exact_t, exact_normal = np.full(len(hits), np.nan), np.full((len(hits), 3), np.nan)
-    exact_t[good], exact_normal[good] = _exact_hits(scene, hits, good)
+    for first in range(0, len(good), RAYS_AT_ONCE):
+        if cancel is not None and cancel.is_set():
+            raise Cancelled("the measuring of errors was cancelled")
+        some = good[first:first + RAYS_AT_ONCE]
+        exact_t[some], exact_normal[some] = _exact_hits(scene, hits, some)
+        tell(first + len(some), len(good))
+        if progress:
+            progress(first + len(some), len(good))
     counted = np.ones(len(hits), bool)
     if scene.model is not None:
         counted[good[_cut_off(scene, hits, exact_t, good)]] = False

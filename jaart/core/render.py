@@ -28,7 +28,7 @@ from jaart.core.tracers import NO_BEGINS, NO_BLOCKS
 from jaart.core.warm import warm_up
 
 #: What one ray and its hit take.
-_BYTES_A_RAY = 6 * 8 + 9 * 8 + 4 * 4 + 1
+_BYTES_A_RAY = 6 * 8 + 9 * 8 + 7 * 4 + 1
 #: A picture that is done sooner than this [s] shows nothing between its first coarse one and itself.
 PATIENCE = 0.15
 
@@ -149,8 +149,9 @@ def unit(directions: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _Run:
-    """A picture, or a list of rays, under way in a pool of so many threads; begin: when it began; before: what its
-    tracer had made by then.
+    """A picture, or a list of rays, under way in a pool of so many threads.
+
+    begin: when it began; before: what earlier rays of the same tracer had made ready.
     """
 
     pool: ThreadPoolExecutor

@@ -90,6 +90,11 @@ class Scene:
                 check(self)
 
     @property
+    def known(self) -> bool:
+        """Whether its surface is known exactly, by its solids or as it is."""
+        return self.model is not None or self.exact is not None
+
+    @property
     def kind(self) -> str:
         """lattice, model or cloud."""
         return "cloud" if self.points is not None else "lattice" if self.model is None else "model"

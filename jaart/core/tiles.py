@@ -38,7 +38,6 @@ def in_blocks(size: tuple[int, int], step: int, before: int = 0) -> Pixels:
     pixels, edge = pixels_at(size, step, before), EDGE * step
     blocks = pixels // size[0] // edge * (size[0] // edge + 1) + pixels % size[0] // edge
     pixels = pixels[np.argsort(blocks, kind="stable")]
-    pixels.flags.writeable = False
     return pixels
 
 
@@ -53,10 +52,10 @@ def columns_for(count: int) -> Out:
     def numbers() -> NDArray[np.int32]:
         return np.empty(count, np.int32)
 
-    def none() -> NDArray[np.int32]:
+    def counts() -> NDArray[np.int32]:  # of what not every kind of tracer has
         return np.zeros(count, np.int32)
 
     return Out(t=np.empty(count), point=np.empty((count, 3)), normal=np.empty((count, 3)), energy=np.empty(count),
                off_centre=np.empty(count), iterations=numbers(), evaluations=numbers(), neighbours=numbers(),
                cells=numbers(), lowered=numbers(), gap=np.empty(count), status=np.empty(count, np.uint8),
-               starts=none(), eigenvectors=none(), gradients=none())
+               starts=counts(), eigenvectors=counts(), gradients=counts())

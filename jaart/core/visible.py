@@ -33,12 +33,12 @@ def pixel(scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int
 
     size: (width, height) of the picture.
     """
+    edge = camera.view(size).pixel
     if camera.ortho is not None:
-        return camera.ortho / max(size)
+        return edge
     low, high = extents.bounds(scene, settings)
     eye: Array = np.asarray(camera.eye)
-    away = float(np.linalg.norm(eye - np.clip(eye, low, high)))
-    return 2 * math.tan(math.radians(camera.fov) / 2) / max(size) * away
+    return edge * float(np.linalg.norm(eye - np.clip(eye, low, high)))
 
 
 def model_error(scene: Scene, settings: Settings, h: float) -> float:

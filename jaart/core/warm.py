@@ -26,6 +26,7 @@ from jaart.core.places import neighbours_of, served
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings
 from jaart.core.surfels import Surfels
+from jaart.core.telling import told
 from jaart.core.tiles import columns_for
 from jaart.core.tracers import LatticeTracer
 
@@ -54,7 +55,7 @@ def warm_up(scene: Scene, settings: Settings, tracing: bool = False) -> Chosen:
     settings that make no sense in the scene.
     """
     values = meaning.check(scene, settings)
-    with _LOCK:
+    with _LOCK, told(None):
         _camera()
         (_cloud if scene.kind == "cloud" else _lattice)()
         if tracing:

@@ -10,7 +10,6 @@ from qtpy.QtGui import QAction, QActionGroup, QKeySequence, QStandardItemModel
 from qtpy.QtWidgets import QComboBox, QLabel, QMenu, QSizePolicy, QSpinBox, QToolBar, QToolButton, QWidget
 
 from jaart.core.maps import MAPS, lacks
-from jaart.core.quality import known
 from jaart.gui.navigation import VIEWS
 
 if TYPE_CHECKING:
@@ -51,7 +50,7 @@ class Actions:
     def refresh(self) -> None:
         """Show the model's map, theme and frame, and which maps the scene allows."""
         scene = self.model.scene
-        exact = scene is not None and known(scene)
+        exact = scene is not None and scene.known
         self.map_actions[self.model.map].setChecked(True)
         items = self.maps.model()
         for row, name in enumerate(MAPS):

@@ -9,11 +9,8 @@ from qtpy.QtGui import QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QR
 from qtpy.QtWidgets import QApplication, QWidget
 
 from jaart.core.camera import Camera
-from jaart.core.picture import plain
-from jaart.core.quality import known
 from jaart.core.records import Hits
 from jaart.core.settings import PARAMETERS, Settings
-from jaart.core.shade import shade
 from jaart.gui import navigation, overlay, theme
 from jaart.gui.model import SceneModel
 
@@ -63,6 +60,9 @@ class ImageView(QWidget):
         self.update()
 
     def _colour(self, hits: Hits) -> None:
+        from jaart.core.picture import plain
+        from jaart.core.shade import shade
+
         model, settings = self.model, plain(self.model.settings)
         errors = model.quality if model.map.endswith("_error") else None
         finished = model.shader.colours
@@ -76,7 +76,7 @@ class ImageView(QWidget):
 
     def _was_exact(self) -> bool:
         """Whether errors are on show that the next full picture will bring anew."""
-        exact = self.model.scene is not None and known(self.model.scene)
+        exact = self.model.scene is not None and self.model.scene.known
         return exact and not self.image.isNull() and not self.model.idle
 
     def picture_area(self) -> QRectF:

@@ -9,7 +9,6 @@ from qtpy.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QShowEvent
 from qtpy.QtWidgets import QApplication, QFileDialog, QMainWindow, QMessageBox, QTabWidget, QWidget
 
 from jaart.core.errors import FileError
-from jaart.core.io.atomic import replacing
 from jaart.gui import theme
 from jaart.gui.actions import Actions
 from jaart.gui.docks import LATE, Area, Late, Loader, PanelDock
@@ -67,6 +66,8 @@ class MainWindow(QMainWindow):
 
     def save_picture(self, path: str | Path) -> None:
         """Save the picture as it is shown; an error is told in the window."""
+        from jaart.core.io.atomic import replacing
+
         try:
             with replacing(Path(path)) as temporary:
                 if not self.view.image.save(str(temporary), "PNG"):

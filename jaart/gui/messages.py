@@ -5,6 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from qtpy.QtCore import Qt, QTime
+from qtpy.QtGui import QShowEvent
 from qtpy.QtWidgets import QFrame, QHBoxLayout, QLabel, QSizePolicy, QTextBrowser, QToolButton, QWidget
 
 from jaart.gui import theme
@@ -82,7 +83,14 @@ class Log(QTextBrowser):
         del self.lines[:-500]
         self._show()
 
+    def showEvent(self, event: QShowEvent) -> None:
+        """Show what was said while the log was hidden."""
+        super().showEvent(event)
+        self._show()
+
     def _show(self) -> None:
+        if not self.isVisible():
+            return
         colours = theme.COLOURS[self.model.theme]
         self.setHtml("".join(
             f'<div><span style="color:{colours["weak"]}">{when}</span>&nbsp;&nbsp;'

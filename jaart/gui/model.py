@@ -12,6 +12,9 @@ from jaart.core.records import Hits, Quality, Trace
 from jaart.core.scene import Scene
 from jaart.core.settings import PRESETS, Settings, preset
 from jaart.gui import navigation, results, tasks
+from jaart.gui.computers import Computers
+from jaart.gui.look import Look
+from jaart.gui.measurer import Measurer
 from jaart.gui.navigation import Bounds
 from jaart.gui.notes import Notes
 from jaart.gui.preparing import Preparing
@@ -30,7 +33,7 @@ DRAG_SECONDS = 0.03
 PICTURE = (512, 512)
 
 
-class SceneModel(QObject):
+class SceneModel(Look):
     """Scene, settings, camera, picture, picked ray and theme, and the work that follows their changes.
 
     Pixels (x, y) count from the top left of the full picture of `size` (width, height). Files are
@@ -42,12 +45,11 @@ class SceneModel(QObject):
     settings_changed = Signal()
     camera_changed = Signal()
     hits_changed = Signal()
-    map_changed = Signal()
     picked_changed = Signal()
     trace_changed = Signal()
     step_changed = Signal()
-    theme_changed = Signal()
     progressed = Signal(float)
+    begun = Signal()
     settled = Signal()
     failed = Signal(str)
     fault_changed = Signal()
@@ -66,20 +68,13 @@ class SceneModel(QObject):
         self.size = PICTURE
         self.hits: Hits | None = None
         self.quality: Quality | None = None
-        self.map, self.theme = "shaded", "light"
         self._full: tuple[Hits, Quality | None] | None = None
         self.picked: tuple[int, int] | None = None
         self.trace, self.step = None, 0  # type: Trace | None, int
         self._worker, self._painter = Worker(self), Worker(self)
-        self.shader = Shader(self)
+        self.shader, self.measurer = Shader(self), Measurer(self)
         self.notes, self._slow = Notes(self), Preparing(self)
-        self._painter.failed.connect(self.failed)
-        for worker in (self._worker, self.shader.worker):
-            worker.progressed.connect(self.progressed)
-            worker.failed.connect(self.failed)
-            worker.refused.connect(self._refuse)
-            worker.said.connect(self.said)
-            worker.ended.connect(self._ended)
+        self._computers = Computers(self, self._worker, self._painter, self._refuse, self._ended)
         self._worker.said.connect(self._slow.stop)
 
     @property
@@ -89,8 +84,8 @@ class SceneModel(QObject):
 
     @property
     def computing(self) -> bool:
-        """Whether something is being read, rendered, traced or shaded."""
-        return not (self._worker.idle and self.shader.worker.idle)
+        """Whether something is being read, rendered, traced, shaded or measured."""
+        return self._computers.computing
 
     @property
     def kind(self) -> str:
@@ -101,6 +96,11 @@ class SceneModel(QObject):
     def complete(self) -> bool:
         """Whether the picture is the full one, not a coarse first one."""
         return self.hits is not None and self.hits.size == self.size
+
+    @property
+    def current(self) -> bool:
+        """Whether the picture is of the settings, and no newer one is under way."""
+        return self.hits is not None and self.hits.settings.key("rays") == self.settings.key("rays")
 
     def open(self, source: str | PathLike[str], frame: int | None = None, camera: Camera | None = None) -> None:
         """Read a scene; when it cannot be read, `failed` says why and the old scene stays."""
@@ -165,18 +165,6 @@ class SceneModel(QObject):
             self.picked_changed.emit()
         self._render()
 
-    def set_map(self, name: str) -> None:
-        """Choose what the picture shows: a name of jaart.core.shade.MAPS."""
-        if name != self.map:
-            self.map = name
-            self.map_changed.emit()
-
-    def set_theme(self, name: str) -> None:
-        """Choose "light" or "dark"."""
-        if name != self.theme:
-            self.theme = name
-            self.theme_changed.emit()
-
     def pick(self, x: int, y: int) -> None:
         """Trace the ray through pixel (x, y); a pixel outside the picture is moved to its edge."""
         self.picked = (min(max(x, 0), self.size[0] - 1), min(max(y, 0), self.size[1] - 1))
@@ -202,10 +190,15 @@ class SceneModel(QObject):
         """Have something drawn for a panel in a thread of its own; of a kind the newest drawing wins."""
         self._painter.submit(kind, lambda job: work(), done, brief=True)
 
+    def stop(self) -> None:
+        """Stop what is being read, rendered, traced, shaded or measured; what is shown stays."""
+        self._computers.cancel()
+        self._slow.stop()
+        self.said.emit("Stopped")
+
     def close(self) -> None:
         """Cancel what runs and end the threads."""
-        for worker in (self._worker, self._painter, self.shader.worker):
-            worker.stop()
+        self._computers.close()
 
     def _opened(self, opened: Opened, camera: Camera | None) -> None:
         scene, bounds = opened.scene, opened.bounds
@@ -246,24 +239,28 @@ class SceneModel(QObject):
         size = results.smaller(self.hits, self.size, DRAG_SECONDS) if dragging else self.size
         self._slow.start()
         self._worker.submit("picture", lambda job: tasks.picture(job, scene, settings, camera, size, dragging),
-                            self._made, lambda hits: self._show(hits, None), brief=dragging)
+                            self._made, self._show, brief=dragging)
 
     def _made(self, made: Made) -> None:
         if made.known != self.known:
             self.known = made.known
             self.known_changed.emit()
-        self._show(made.hits, made.quality)
+        self._show(made.hits)
 
-    def _show(self, hits: Hits, quality: Quality | None) -> None:
+    def show_quality(self, quality: Quality | None) -> None:
+        """Take the errors of the picture that is shown."""
+        assert self.hits is not None
+        self.quality, self._full = quality, (self.hits, quality)
+        self.hits_changed.emit()
+
+    def _show(self, hits: Hits) -> None:
         self._slow.stop()
-        shown = self.hits is not None and self.hits.t is hits.t  # already; here come its errors
-        self.hits, self.quality = results.with_settings(hits, self.settings), quality
+        self.hits, self.quality = results.with_settings(hits, self.settings), None
         self.hits_changed.emit()
         if self.complete:
             self._full = self.hits, self.quality
             self.progressed.emit(1.0)
-            if not shown:
-                self._trace()
+            self._trace()
 
     def _trace(self) -> None:
         if self.scene is None or self.camera is None or self.picked is None or self.fault is not None:

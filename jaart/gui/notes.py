@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from qtpy.QtCore import QObject, Signal
 
-from jaart.core.io import BUILT_IN
 from jaart.core.records import Hits
+from jaart.core.scene import Scene
 from jaart.plot.style import OUTCOMES
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class Notes(QObject):
         for note in gathered:
             if note not in self._said:
                 self.model.said.emit(note)
-        ours = read if scene is not None and scene.source in BUILT_IN else ()  # nobody's file: not worth a bar
+        ours = read if scene is not None and _built_in(scene) else ()  # nobody's file: not worth a bar
         old, self._said, self.now = self.now, gathered, tuple(note for note in gathered if note not in ours)
         if self.now != old:
             self.changed.emit()
@@ -52,6 +52,12 @@ class Notes(QObject):
         self.now = self._empty = self._said = ()
         self.changed.emit()
         self.refresh()
+
+
+def _built_in(scene: Scene) -> bool:
+    from jaart.core.io import BUILT_IN
+
+    return scene.source in BUILT_IN
 
 
 def empty(hits: Hits) -> tuple[str, ...]:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
 from qtpy.QtCore import QPointF, QRect, QRectF, Qt
 from qtpy.QtGui import QColor, QFontMetrics, QImage, QPainter, QPen
 
+from jaart.core.colours import BACKGROUND, COLOURS, TABLE
 from jaart.core.maps import MAPS, scale, unit
 from jaart.core.records import STATUS_NAMES, Hits, Quality
-from jaart.core.shade import BACKGROUND, COLOURS, TABLE
 from jaart.gui import theme as look
 from jaart.plot.style import OUTCOMES
 
@@ -37,7 +38,18 @@ def draw_scale(painter: QPainter, area: QRect, name: str, hits: Hits, quality: Q
     if name == "status":
         _draw_states(painter, area, hits, theme)
     elif name != "shaded":
-        _draw_bar(painter, area, (MAPS[name].label, unit(name, kind)), scale(name, hits, quality), theme)
+        _draw_bar(painter, area, (MAPS[name].label, unit(name, kind)), _limits(name, hits, quality), theme)
+
+
+@functools.lru_cache(maxsize=1)
+def _limits(name: str, hits: Hits, quality: Quality | None) -> tuple[float, float]:
+    """The limits of a map's scale, found once for a picture: it is painted whenever the mouse moves."""
+    return scale(name, hits, quality)
+
+
+@functools.lru_cache(maxsize=1)
+def _counts(hits: Hits) -> dict[str, int]:
+    return hits.counts()
 
 
 def _draw_bar(painter: QPainter, area: QRect, name: tuple[str, str], limits: tuple[float, float], theme: str) -> None:
@@ -59,7 +71,7 @@ def _draw_bar(painter: QPainter, area: QRect, name: tuple[str, str], limits: tup
 
 def _draw_states(painter: QPainter, area: QRect, hits: Hits, theme: str) -> None:
     width, y = 224, area.top() + 12
-    for name, count in hits.counts().items():
+    for name, count in _counts(hits).items():
         rgb = BACKGROUND[theme] if name == "background" else COLOURS[name]
         painter.setPen(look.colour(theme, "weak"))
         painter.setBrush(QColor(*rgb))
@@ -111,7 +123,7 @@ def numbers(hits: Hits, quality: Quality | None, x: int, y: int, kind: str = "la
     """
     assert hits.size is not None
     at, of = x + y * hits.size[0], "units" if kind == "cloud" else "cells"
-    behind = ", from behind" if sided and hits.from_behind[at] else ""
+    behind = ", from behind" if sided and hits.hit[at] and hits.normal[at] @ hits.direction[at] > 0 else ""
     rows = [("Pixel", f"{x}, {y}"), ("Ray", OUTCOMES[STATUS_NAMES[hits.status[at]]] + behind)]
     if hits.hit[at]:
         normal = ", ".join(f"{n:+.3f}" for n in hits.normal[at])

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 from qtpy.QtCore import QObject, Signal
 
 from jaart.core.colours import Bytes
-from jaart.core.picture import finish, takes_time
 from jaart.gui.worker import Job, Worker
 
 if TYPE_CHECKING:
@@ -35,13 +34,12 @@ class Shader(QObject):
     def colours(self) -> Bytes | None:
         """Finished colours (h, w, 3) of the model's hits, None where there are none yet or none are needed."""
         hits = self.model.hits
-        needed = hits is not None and hits.t is self._of and takes_time(self.model.settings, self.model.map)
-        return self._colours if needed else None
+        return self._colours if hits is not None and hits.t is self._of and self._needed() else None
 
     def refresh(self) -> None:
         """Begin to shade the model's picture, or stop."""
         model, hits = self.model, self.model.hits
-        if hits is None or not model.complete or not takes_time(model.settings, model.map) or not self._current():
+        if hits is None or not model.complete or not self._needed() or not model.current:
             self._asked = ()
             self.worker.cancel("picture")
             return
@@ -52,15 +50,17 @@ class Shader(QObject):
         assert scene is not None
 
         def work(job: Job) -> tuple[Any, Bytes]:
+            from jaart.core.picture import finish
+
             job.say("Shading …")
             return hits.t, finish(hits, scene, "shaded", None, theme, settings, job.cancel, job.progress)
 
         self.worker.submit("picture", work, self._done)
 
-    def _current(self) -> bool:
-        """Whether the picture is of the model's settings, and no newer one is under way."""
-        hits = self.model.hits
-        return hits is not None and hits.settings.key("rays") == self.model.settings.key("rays")
+    def _needed(self) -> bool:
+        from jaart.core.picture import takes_time
+
+        return takes_time(self.model.settings, self.model.map)
 
     def _done(self, made: tuple[Any, Bytes]) -> None:
         self._of, self._colours = made

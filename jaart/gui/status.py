@@ -6,6 +6,7 @@ from qtpy.QtCore import QTimer
 from qtpy.QtWidgets import QLabel, QProgressBar, QStatusBar, QWidget
 
 from jaart.gui.model import SceneModel
+from jaart.gui.stop import StopButton
 from jaart.gui.theme import tabular
 
 
@@ -23,11 +24,13 @@ class Status(QStatusBar):
         self.figures.setFont(tabular(self.figures.font()))
         self.setContentsMargins(8, 0, 8, 0)
         self.addWidget(self.bar)
+        self.addWidget(StopButton(model))
         self.addWidget(self.state, 1)
         self.addPermanentWidget(self.figures)
         self._late = QTimer(self, singleShot=True, interval=200)
         self._late.timeout.connect(lambda: self._progress(0.0))
         model.progressed.connect(self._progress)
+        model.measurer.progressed.connect(lambda share: self._progress(share, "Measuring errors"))
         model.said.connect(self.state.setText)
         model.hits_changed.connect(self.refresh)
         model.settled.connect(self._settled)
@@ -42,13 +45,13 @@ class Status(QStatusBar):
         elif self.model.hits is None:
             self.figures.setText("")
 
-    def _progress(self, share: float) -> None:
+    def _progress(self, share: float, what: str = "Tracing rays") -> None:
         if not self.model.computing:
             return
         self.bar.setVisible(share < 1)
         self.bar.setValue(round(100 * share))
         if share:
-            self.state.setText(f"Tracing rays … {100 * share:.0f} %")
+            self.state.setText(f"{what} … {100 * share:.0f} %")
 
     def _settled(self) -> None:
         self._late.stop()

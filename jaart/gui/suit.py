@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from jaart.core import meaning
 from jaart.core.errors import SettingsError
 from jaart.core.parameter import Length
 from jaart.core.scene import Scene
@@ -16,6 +15,8 @@ def suited(scene: Scene, settings: Settings, base: Settings, before: Scene | Non
     base: the preset whose values replace those that do not suit; before: the scene that the settings were made for:
     lengths in cells say nothing in a cloud, nor the other way round. May take seconds for a large cloud.
     """
+    from jaart.core import meaning
+
     kept = _in_kind(scene, settings, base, before)
     for _ in PARAMETERS:
         try:

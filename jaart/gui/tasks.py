@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jaart.core.camera import Camera
-from jaart.core.records import Hits, Quality, Trace
+from jaart.core.records import Hits, Trace
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings
 from jaart.gui.navigation import Bounds
@@ -46,10 +46,9 @@ class Known:
 
 @dataclass(frozen=True)
 class Made:
-    """A picture, its errors where the exact surface is known, and what its settings came to."""
+    """A picture, and what its settings came to."""
 
     hits: Hits
-    quality: Quality | None
     known: Known
 
 
@@ -78,9 +77,8 @@ def bounds(scene: Scene, settings: Settings) -> Bounds:
 
 def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int],
             dragging: bool) -> Made:
-    """A picture; coarse ones are shown while it is made, and the full one while its errors are measured."""
+    """A picture; coarse ones are shown while it is made."""
     from jaart.core.meaning import check
-    from jaart.core.quality import known, quality
     from jaart.core.render import render
     from jaart.core.warm import needs_compile
 
@@ -89,10 +87,7 @@ def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tu
     values = check(scene, settings)
     hits = render(scene, settings, camera, size, progress=None if dragging else job.progress, cancel=job.cancel,
                   picture=None if dragging else job.partial)
-    if dragging or not known(scene):
-        return Made(hits, None, _known(scene, settings, values))
-    job.partial(hits)
-    return Made(hits, quality(hits, scene), _known(scene, settings, values))
+    return Made(hits, _known(scene, settings, values))
 
 
 def _known(scene: Scene, settings: Settings, values: Chosen) -> Known:

@@ -67,6 +67,7 @@ class Worker(QObject):
     failed = Signal(str)
     refused = Signal(str)
     said = Signal(str)
+    begun = Signal()
     ended = Signal()
     posted = Signal(object, str, object)
 
@@ -100,6 +101,7 @@ class Worker(QObject):
             self._waiting[kind] = job
             self._open.add(job)
             self._change.notify()
+        self.begun.emit()
 
     def cancel(self, kind: str) -> None:
         """Stop the running job of a kind, forget the waiting one, and hand over nothing more of either."""
@@ -109,6 +111,11 @@ class Worker(QObject):
                 job.forgotten |= job.kind == kind
             if self._running is not None and self._running.kind == kind:
                 self._running.cancel.set()
+
+    def cancel_all(self) -> None:
+        """Stop what runs and forget what waits."""
+        for kind in KINDS:
+            self.cancel(kind)
 
     def stop(self) -> None:
         """End the thread: cancel what runs, forget what waits, and wait for the thread."""

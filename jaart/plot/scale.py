@@ -7,7 +7,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core.cloud_surfels import Points
 from jaart.core.records import Trace
 
 Array = NDArray[np.float64]
@@ -18,6 +17,8 @@ _UNABLE = {"undefined_normal": "the normal is undefined", "few_neighbours": "no 
 
 def is_cloud(trace: Trace) -> bool:
     """Whether the ray goes through a cloud, and so through balls instead of cells."""
+    from jaart.core.cloud_surfels import Points
+
     return isinstance(trace.surfels, Points)
 
 

@@ -52,10 +52,10 @@ def rule_of(h: float, weight: str, kind: str, degree: int = 2) -> r.Rule:
 def evaluated(x: list[float], points: Points, normals: Points, h: float, weight: str = "gaussian", kind: str = "surfel",
               degree: int = 2) -> tuple[r.Value, Array, Array]:
     """The value at x, the scratch array and the polynomial."""
-    work, coefficients = np.full(24 * len(points), np.nan), np.full(15, np.nan)
+    work, coefficients = np.full(24 * len(points), np.nan), np.full(r.FIT_SIZE, np.nan)
     value = project.projection(near_of(points, normals), three(x), rule_of(h, weight, kind, degree), 0, work,
                                coefficients)
-    return value, work, coefficients
+    return value, work, coefficients[:r.COEFFICIENTS]
 
 
 def shape(name: str, seed: int) -> tuple[Points, Points, list[float], float]:

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import json
+import os
 import re
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -36,28 +41,45 @@ def packed() -> str:
     pytest.skip(f"no vectors of doubles are known on {machine}")
 
 
-@pytest.mark.parametrize("name", LOOPS)
-def test_loops_are_compiled_to_vectors(name: str) -> None:
-    kernel, signature, least = LOOPS[name]
-    pattern = packed()
-    fresh = numba.njit(kernel.py_func, nogil=True, fastmath=kernel.targetoptions["fastmath"], error_model="numpy",
-                       _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+def code_of(function: Any, signature: tuple[Any, ...], flags: Any) -> str:
+    """The machine code of a function compiled for a signature."""
+    fresh = numba.njit(function, nogil=True, fastmath=flags, error_model="numpy", _nrt=False, no_cpython_wrapper=True,
+                       no_cfunc_wrapper=True)
     fresh.compile(signature)
     (code,) = fresh.inspect_asm().values()
-    assert len(re.findall(pattern, code)) >= least, name
+    return str(code)
 
 
-def test_a_loop_in_which_each_step_needs_the_last_is_none() -> None:
+def chain(a: records.Array) -> float:
+    """A loop in which each step needs the last: it cannot be a vector."""
+    total = 1.0
+    for i in range(a.shape[0]):
+        total = total * a[i] + 1.0
+    return total
+
+
+def all_codes() -> dict[str, str]:
+    """The machine code of all loops."""
+    codes = {name: code_of(kernel.py_func, signature, kernel.targetoptions["fastmath"])
+             for name, (kernel, signature, _) in LOOPS.items()}
+    return codes | {"chain": code_of(chain, (PACKET,), {"contract"})}
+
+
+@pytest.fixture(scope="module")
+def codes() -> dict[str, str]:
+    """The machine code of all loops, compiled in a process of its own: code that nobody calls is not kept here."""
+    script = "import json; from tests.core.test_machine_code import all_codes; print(json.dumps(all_codes()))"
+    root = Path(__file__).parents[2]
+    done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True, cwd=root,
+                          env={**os.environ, "PYTHONPATH": str(root)})
+    return dict(json.loads(done.stdout))
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_loops_are_compiled_to_vectors(name: str, codes: dict[str, str]) -> None:
+    assert len(re.findall(packed(), codes[name])) >= LOOPS[name][2]
+
+
+def test_a_loop_in_which_each_step_needs_the_last_is_none(codes: dict[str, str]) -> None:
     """What the pattern finds is not there in a loop that cannot be a vector: the check can fail."""
-    pattern = packed()
-
-    def strict(a: records.Array) -> float:
-        total = 1.0
-        for i in range(a.shape[0]):
-            total = total * a[i] + 1.0
-        return total
-
-    fresh = numba.njit(strict, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-    fresh.compile((PACKET,))
-    (code,) = fresh.inspect_asm().values()
-    assert not re.findall(pattern, code)
+    assert codes["chain"] and not re.findall(packed(), codes["chain"])

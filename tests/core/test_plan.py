@@ -11,13 +11,26 @@ import scipy.spatial
 
 import jaart
 from jaart.core import cell_table, cloud_surfels, filters, lights, meshes, picture, prepare, shade, surfels
-from jaart.core.assemble import evaluator, rule_of, searcher
+from jaart.core.assemble import evaluator, plan_of, rule_of, searcher
 from jaart.core.balls import CloudTracer
 from jaart.core.camera import Camera
 from jaart.core.chosen import arrival
 from jaart.core.errors import SettingsError
+from jaart.core.field import Energy
 from jaart.core.io import load
-from jaart.core.kernels import centres, fitted, march, minimise, normals, probe, project, safe, stepping, tangent
+from jaart.core.kernels import (
+    centres,
+    field,
+    fitted,
+    march,
+    minimise,
+    normals,
+    probe,
+    project,
+    safe,
+    stepping,
+    tangent,
+)
 from jaart.core.kernels import records as r
 from jaart.core.kernels.records import FIT_SIZE, Start
 from jaart.core.meaning import check
@@ -154,6 +167,29 @@ def test_how_a_ray_comes_from_cell_to_cell(given: dict[str, Any], said: str | No
     one = plan(scene, settings)["traversal"]
     assert one.runs == (said is not None) and one.reason.startswith(said or "the tree of the triangles")
     assert (visited != exact).any() == bool(given)
+
+
+@pytest.mark.parametrize("name", PARAMETERS["energy"].choices)
+@pytest.mark.parametrize("emphasise", [False, True])
+def test_an_energys_level_takes_a_normal_where_it_is_planned(name: str, emphasise: bool,
+                                                             monkeypatch: pytest.MonkeyPatch) -> None:
+    if emphasise and name == "angle":
+        return  # refused
+    scene, calls, asked = lattice(), list[str](), list[int]()
+    settings = Settings(method="isosurface", energy=name, emphasise=emphasise, normal="covariance")
+    values, near = check(scene, settings), near_of(PLANE)
+    made = Energy(prepare.cells(scene, settings, values), plan_of(scene, settings, values), name, emphasise).asked
+    python(monkeypatch, calls, tangent, normals)
+
+    def evaluate(_: int, *args: Any) -> Any:
+        asked.append(args[3])
+        return tangent.tangent_covariance(*args)
+
+    monkeypatch.setattr(field, "evaluate_at", evaluate)
+    field.energy_at.py_func(near, (0.1, 0.0, 0.05), made, (0.0, 0.0, 1.0), work_for(near), np.zeros(FIT_SIZE))
+    planned = plan(scene, settings)
+    assert len(asked) == 1 and planned["covariance and eigenvector"].runs == ("covariance_sums" in calls)
+    assert planned["Mahalanobis sum"].runs == (name == "mahalanobis")
 
 
 @pytest.mark.parametrize("given", [

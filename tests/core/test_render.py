@@ -135,7 +135,7 @@ def test_impossible_sizes(standard: Scene, size: tuple[int, int]) -> None:
 
 def test_a_picture_beyond_memory_is_refused(standard: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("jaart.core.memory.limit", lambda: 1 << 20)
-    with pytest.raises(RayError, match=r"size 100x100: needs 1\.3\d MiB"):
+    with pytest.raises(RayError, match=r"size 100x100: needs 1\.42 MiB"):
         render(standard, size=(100, 100))
 
 

@@ -191,7 +191,7 @@ def test_skipping_visits_fewer_cells() -> None:
     fast = lattice_of(ready)
     slow = fast._replace(empty=np.minimum(fast.empty, 1).astype(np.uint8))
     o, d = (-5.0, 15.2, 16.3), (1.0, 0.0, 0.0)
-    fast_end, slow_end = (traced(LatticeTracer(lambda: cells, ready.tracer.plan), o, d)[0]  # noqa: B023
+    fast_end, slow_end = (traced(LatticeTracer(lambda cells=cells: cells, ready.tracer.plan), o, d)[0]
                           for cells in (fast, slow))
     assert fast_end["status"] == records.CONVERGED
     for name in fast_end.keys() - {"cells"}:

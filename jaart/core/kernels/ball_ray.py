@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.address import floats_at, load
-from jaart.core.kernels.blocks import FITTED, GATHERER, HEAP, KEPT, MORE, is_short, kept_in, publish
+from jaart.core.kernels.blocks import FITTED, GATHERER, HEAP, KEPT, MORE, is_short, kept_in, publish, take_back
 from jaart.core.kernels.call import evaluate_at, gather_at, search_from
 from jaart.core.kernels.counts import forget_counts, write_counts
 from jaart.core.kernels.guess import GUESS_WIDTH, STATE, is_near, meets, show_centre, write_guess
@@ -128,6 +128,7 @@ def make_ready(sites: Sites, plan: Plan, ball: int, work: Array, fit: Array) -> 
         return False
     near = near_in(pool, address)
     if pool[MORE] > 0:
+        take_back(pool, address)
         return False
     if pool[KEPT] > 0:
         taken = fit[r.EIGENVECTORS]  # what is kept for all rays is none's

@@ -90,13 +90,19 @@ def lay(pool: Numbers, size: int) -> int:
 
 
 @kernel(STRICT)
+def take_back(pool: Numbers, address: int) -> None:
+    """Have the room of this thread's last block again."""
+    if address != pool[EMPTY]:
+        pool[LEFT] += pool[AT] - address
+        pool[AT] = address
+
+
+@kernel(STRICT)
 def publish(slots: Numbers, number: int, address: int, pool: Numbers) -> int:
     """Let all threads know where a place's block lies, this thread's last; returns the one that they all use."""
     before = set_once(slots, number, address)
     if before == 0:
         pool[GATHERED] += 1
         return address
-    if address != pool[EMPTY]:
-        pool[LEFT] += pool[AT] - address
-        pool[AT] = address
+    take_back(pool, address)
     return before

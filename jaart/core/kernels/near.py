@@ -26,10 +26,15 @@ def place_number(sites: Sites, cell: Cell) -> int:
 
 @kernel(STRICT)
 def gathered(sites: Sites, cell: Cell, number: int) -> int:
-    """Address of the block of a place that has none yet; that of the empty one where the pool is short."""
+    """Address of the block of a place that has none yet; that of the empty one where the pool is short.
+
+    Only a ray's driver publishes a block in which something of the centre is to be kept, for it knows what.
+    """
     pool = sites.pool
     address = gather_at(pool[b.GATHERER], pool, cell) if pool[b.NEED] == 0 else 0
-    return b.publish(sites.slots, number, address, pool) if address != 0 else pool[b.EMPTY]
+    if address == 0:
+        return pool[b.EMPTY]
+    return b.publish(sites.slots, number, address, pool) if pool[b.KEPT] == 0 else address
 
 
 @kernel(STRICT)
