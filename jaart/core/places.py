@@ -146,10 +146,9 @@ class Places:
     @property
     def kept(self) -> Kept:
         """How much is kept so far; exact while no ray is traced."""
-        made = sum(int(one.nbytes) for one in self._chunks[1:])
         table = int(self.slots.nbytes) + sum(int(one.nbytes) for one in self._alive)
         return Kept(self.count(blocks.GATHERED), self.count(blocks.FITTED), len(self._chunks) - 1,
-                    made - self.count(blocks.LEFT), table)
+                    self.count(blocks.BYTES), table)
 
 
 def address(array: NDArray[Any]) -> int:

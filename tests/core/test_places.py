@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -25,13 +26,27 @@ from tests.core.cloud_scenes import fresh
 from tests.core.kernel_calls import near_at, near_of
 
 SIZE = (40, 40)
-CASES = ["lattice best", "lattice thesis", "cloud best", "cloud thesis"]
+SETTINGS = {
+    "best": preset("best"), "thesis": preset("thesis"), "plane": Settings(), "safe": Settings(search="safe"),
+    "cylinder": Settings(method="cylinder", h=0.6), "march": Settings(search="march"),
+    "polynomial": Settings(method="polynomial", search="secant"),
+}
+CASES = ["lattice best", "lattice thesis", "cloud best", "cloud plane"]
+MORE = ["noise safe", "noise cylinder", "lattice march", "noise polynomial", "cloud safe", "cloud march",
+        "cloud polynomial"]
 
 
 def case(name: str) -> tuple[Scene, Settings]:
     """A scene of its own, that nothing was traced in."""
     kind, settings = name.split()
-    return load("standard") if kind == "lattice" else fresh("bumpy", 2000), preset(settings)
+    return {"lattice": lambda: load("standard"), "noise": noise,
+            "cloud": lambda: fresh("bumpy", 2000)}[kind](), SETTINGS[settings]
+
+
+def noise() -> Scene:
+    """A lattice whose cells are no cubes, so that surfels leave the order of their cells."""
+    levels = np.random.default_rng(2).uniform(0.05, 0.95, (9, 7, 11))
+    return Scene("noise", levels=levels, spacing=(1.0, 0.7, 0.4))
 
 
 def sites_of(scene: Scene, settings: Settings) -> Sites:
@@ -50,8 +65,7 @@ def bits(hits: Hits) -> list[bytes]:
                                                            "evaluations", "neighbours", "cells", "status")]
 
 
-@pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize(("name", "threads"), [*itertools.product(CASES, [1, 3]), *((name, 2) for name in MORE)])
 def test_a_picture_is_the_same_in_a_chunk_for_each_block(name: str, threads: int,
                                                          monkeypatch: pytest.MonkeyPatch) -> None:
     plain, roomy = picture(name)
@@ -132,6 +146,6 @@ def test_columns_are_filled_up_with_surfels_that_count_nothing(count: int) -> No
 def test_rays_that_ask_for_more_than_there_is_are_told(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene, settings = case(name)
     sites_of(scene, settings)
-    monkeypatch.setattr(memory, "limit", lambda: 100 << 10)
-    with pytest.raises(SettingsError, match=r"needs 1.*MiB of memory, more than the"):
+    monkeypatch.setattr(memory, "limit", lambda: 300 << 10)
+    with pytest.raises(SettingsError, match=r"needs 1.* MiB of memory, more than the"):
         render(scene, settings, size=SIZE)

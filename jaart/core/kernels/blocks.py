@@ -19,8 +19,9 @@ from jaart.core.kernels.records import Array, Numbers
 #: A pool. GATHERER: address of the kernel that gathers; EMPTY: that of a block without surfels; AT: where the next
 #: block goes; LEFT: bytes from there on; NEED: of a block that did not fit; ROOM: surfels that the scratch is for;
 #: MORE: of a place that has more; HEAP: 1 where a heap was full; GATHERED, FITTED: places so far, and those whose
-#: centre is kept; PARTS: columns; KEPT: numbers kept of a centre; from SOURCE on: what the gatherer needs to know.
-(GATHERER, EMPTY, AT, LEFT, NEED, ROOM, MORE, HEAP, GATHERED, FITTED, PARTS, KEPT, SOURCE) = range(13)
+#: centre is kept; BYTES: of all blocks; PARTS: columns; KEPT: numbers kept of a centre; from SOURCE on: what the
+#: gatherer needs to know.
+(GATHERER, EMPTY, AT, LEFT, NEED, ROOM, MORE, HEAP, GATHERED, FITTED, BYTES, PARTS, KEPT, SOURCE) = range(14)
 #: Words of a pool.
 POOL_SIZE = SOURCE + 12
 _WORD = 8
@@ -86,6 +87,7 @@ def lay(pool: Numbers, size: int) -> int:
     wholes_at(address, 1)[0] = size
     pool[AT] += length
     pool[LEFT] -= length
+    pool[BYTES] += length
     return address
 
 
@@ -94,6 +96,7 @@ def take_back(pool: Numbers, address: int) -> None:
     """Have the room of this thread's last block again."""
     if address != pool[EMPTY]:
         pool[LEFT] += pool[AT] - address
+        pool[BYTES] -= pool[AT] - address
         pool[AT] = address
 
 
