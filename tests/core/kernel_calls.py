@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.assemble import NORMALS, WEIGHTS
+from jaart.core.bricks import slot_numbers
 from jaart.core.kernels import records as r
 from jaart.core.kernels.fitted import polynomial
 from jaart.core.kernels.jit import STRICT, kernel
@@ -85,3 +86,10 @@ def fitted_value(near: Near, x: Sequence[float], rule: Rule) -> tuple[Value, Arr
     """The polynomial surface at x, and the coefficients."""
     fit = np.full(r.FIT_SIZE, np.nan)
     return polynomial(near, place(x), rule, r.VALUE_ONLY, work_for(near), fit), fit[:r.COEFFICIENTS]
+
+
+def asked_cells(sites: Sites) -> NDArray[np.int64]:
+    """Cells (N, 3) of a lattice that somebody asked for."""
+    cells = np.indices(sites.shape).reshape(3, -1).T
+    number = slot_numbers(sites.shape, sites.slots, cells)
+    return cells[(number >= 0) & (sites.slots[number] != 0)]

@@ -61,7 +61,7 @@ def cells_of(name: str, radius: float) -> r.Cells:
 
 
 def trace_all(cells: r.Cells, radius: float, origin: Array, direction: Array, pixels: np.ndarray, out: r.Out) -> None:
-    tracer = CylinderTracer(cells, None, radius)  # type: ignore[arg-type]
+    tracer = CylinderTracer(lambda: cells, None, radius)  # type: ignore[arg-type]
     tracer.trace(origin, direction, pixels, out)
 
 

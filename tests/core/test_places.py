@@ -7,10 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from jaart.core import balls, memory, places, prepare
-from jaart.core.bricks import slot_numbers
 from jaart.core.errors import SettingsError
 from jaart.core.io import load
 from jaart.core.kernels.blocks import NOWHERE
@@ -23,7 +21,7 @@ from jaart.core.render import render
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings, preset
 from tests.core.cloud_scenes import fresh
-from tests.core.kernel_calls import near_at, near_of
+from tests.core.kernel_calls import asked_cells, near_at, near_of
 
 SIZE = (40, 40)
 SETTINGS = {
@@ -88,13 +86,6 @@ def test_two_pictures_at_once_gather_what_one_does(name: str) -> None:
     kept = places_of(sites_of(scene, settings)).kept
     assert both == [alone, alone]
     assert (kept.gathered, kept.fits, kept.block_bytes) == (once.kept.gathered, once.kept.fits, once.kept.block_bytes)
-
-
-def asked_cells(sites: Sites) -> NDArray[np.int64]:
-    """Cells (N, 3) of a lattice that somebody asked for."""
-    cells = np.indices(sites.shape).reshape(3, -1).T
-    number = slot_numbers(sites.shape, sites.slots, cells)
-    return cells[(number >= 0) & (sites.slots[number] != 0)]
 
 
 def test_a_ray_gathers_only_cells_that_it_crosses() -> None:

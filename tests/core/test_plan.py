@@ -41,7 +41,7 @@ from jaart.core.scene import Model, Scene, frozen
 from jaart.core.settings import PARAMETERS, Settings, preset
 from jaart.core.shapes import Sphere
 from tests.core.cloud_scenes import fresh
-from tests.core.kernel_calls import near_at, near_of, work_for
+from tests.core.kernel_calls import asked_cells, near_at, near_of, work_for
 
 #: What a scene keeps of a stage after rays were traced.
 KEPT = {"fill levels": "levels", "placement": "surfels", "estimated normals": "normals", "cell table": "cells",
@@ -142,13 +142,15 @@ def test_trees_and_the_distance_field(made: str, given: dict[str, Any], monkeypa
     assert planned["tree"].runs == (("ball_tree" if made == "cloud" else "cKDTree") in calls)
 
 
-@pytest.mark.parametrize("made", ["lattice", "cloud"])
-def test_only_a_table_has_neighbours_that_no_ray_asked_for(made: str) -> None:
-    scene, settings = MADE[made](), Settings()
-    hits = render(scene, settings, size=(2, 2))
+@pytest.mark.parametrize(("made", "given"), [("lattice", {}), ("cloud", {}), ("lattice", {"neighbourhood": "knn"}),
+                                             ("lattice", {"neighbourhood": "cell_knn"})])
+def test_neighbours_that_no_ray_asked_for(made: str, given: dict[str, Any]) -> None:
+    scene, settings = MADE[made](), Settings(**given)
     tracer = prepare.prepared(scene, settings).tracer
-    ready = tracer.gathered if isinstance(tracer, CloudTracer) else np.count_nonzero(np.diff(tracer.sites.first))
-    assert plan(scene, settings)["neighbours not asked for"].runs == (ready > hits.cells.sum())
+    before = len(asked_cells(tracer.sites)) if made == "lattice" else np.count_nonzero(tracer.sites.slots)
+    hits = render(scene, settings, size=(4, 4))
+    assert before > 0 or 0 < hits.gathered <= hits.cells.sum()
+    assert plan(scene, settings)["neighbours not asked for"].runs == (before > hits.cells.sum())
 
 
 @pytest.mark.parametrize("made", ["lattice", "cloud"])
