@@ -49,6 +49,7 @@ class SceneModel(Look):
     trace_changed = Signal()
     step_changed = Signal()
     progressed = Signal(float)
+    staged = Signal(str, float)
     begun = Signal()
     settled = Signal()
     failed = Signal(str)
@@ -106,7 +107,7 @@ class SceneModel(Look):
         """Read a scene; when it cannot be read, `failed` says why and the old scene stays."""
         settings, base, before = self.settings, preset(self.preset), self.scene
         self.said.emit(f"Reading {source} …")
-        self._worker.submit("open", lambda job: tasks.read(source, frame, settings, base, before),
+        self._worker.submit("open", lambda job: tasks.read(job, source, frame, settings, base, before),
                             lambda opened: self._opened(opened, camera))
 
     def choose_preset(self, name: str) -> None:
