@@ -90,12 +90,17 @@ class PanelDock(QDockWidget):
         self._stack.addWidget(self._note)
         self.setWidget(self._body)
         self.panel: QWidget | None = None
+        self.visibilityChanged.connect(self._show_panel)
 
     def set_panel(self, panel: QWidget) -> None:
         """Show the panel."""
         self.panel = panel
         self._stack.addWidget(panel)
-        self._stack.setCurrentWidget(panel)
+        self._show_panel(not self.visibleRegion().isEmpty())
+
+    def _show_panel(self, seen: bool) -> None:
+        """Put the panel away while another tab is in front: to Qt it would be visible, and so be drawn."""
+        self._stack.setCurrentWidget(self.panel if self.panel is not None and seen else self._note)
 
     def sizeHint(self) -> QSize:
         """The size that the dock begins with."""

@@ -73,7 +73,8 @@ def test_a_broken_file_is_told_and_the_old_scene_stays(qtbot, window, tmp_path):
     settle(qtbot, window.model)
     assert window.message.isVisible()
     assert "broken.vti" in window.message.text.text()
-    assert "broken.vti" in window.docks["Messages"].panel.toPlainText()
+    window.docks["Messages"].raise_()
+    qtbot.waitUntil(lambda: "broken.vti" in window.docks["Messages"].panel.toPlainText(), timeout=PATIENCE)
     assert window.model.scene is scene
     assert window.model.hits is hits
     assert "standard" in window.windowTitle()
