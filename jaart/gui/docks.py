@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from qtpy.QtCore import QObject, QSize, Qt, Signal
 from qtpy.QtWidgets import QDockWidget, QLabel, QMainWindow, QStackedLayout, QWidget
 
+from jaart.gui.panel import Panel
+
 Area = Qt.DockWidgetArea
 
 
@@ -99,8 +101,9 @@ class PanelDock(QDockWidget):
         self._show_panel(not self.visibleRegion().isEmpty())
 
     def _show_panel(self, seen: bool) -> None:
-        """Put the panel away while another tab is in front: to Qt it would be visible, and so be drawn."""
-        self._stack.setCurrentWidget(self.panel if self.panel is not None and seen else self._note)
+        """Put a panel that draws away while another tab is in front: to Qt it would be visible."""
+        if self.panel is not None:
+            self._stack.setCurrentWidget(self.panel if seen or not isinstance(self.panel, Panel) else self._note)
 
     def sizeHint(self) -> QSize:
         """The size that the dock begins with."""
