@@ -34,7 +34,8 @@ class Strip(Artist):
     def draw(self, renderer: Any) -> None:
         """Draw the boxes that are in view."""
         box = self.axes.bbox
-        ends = self.axes.transData.transform([(x, 0.0) for x in self.ways.ravel()])[:, 0].reshape(-1, 2)
+        points = np.column_stack([self.ways.ravel(), np.zeros(self.ways.size)])
+        ends = self.axes.transData.transform(points)[:, 0].reshape(-1, 2)
         seen = (ends[:, 1] > box.x0) & (ends[:, 0] < box.x1)
         if seen.any() and self.get_visible():
             ends, top = np.clip(ends[seen], box.x0 - 50, box.x1 + 50), box.y0 + self.height * box.height

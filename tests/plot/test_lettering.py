@@ -11,8 +11,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 
+from jaart.plot import lettering
 from jaart.plot.energy import draw_energy
-from jaart.plot.lettering import Look, put
+from jaart.plot.lettering import Look, measure, pieces, put
 from jaart.plot.projection import draw_projection
 from jaart.plot.ruler import Ruler
 from jaart.plot.style import THEMES, edges, emptied, place
@@ -53,6 +54,22 @@ def test_a_word_that_is_copied_is_the_one_that_is_written(text):
     one, other = (np.asarray(r.buffer_rgba())[:, :, 3].astype(int) for r in (copied, written))
     assert one.any()
     assert abs(one - other).max() <= 2
+
+
+@pytest.mark.parametrize("text", ["Step 1 of 2:  12.5", "e at −0.25", "$e_{oc}$ = 3", "", " ", "190\u2009344 rays"])
+def test_a_text_is_all_its_pieces_in_order(text):
+    look = Look(text, 8.5, "#000000")
+    assert "".join(piece.text for piece in pieces(look)) == text
+    whole = RendererAgg(1, 1, 100.0).get_text_width_height_descent(text, FontProperties(size=8.5), "$" in text)
+    assert "$" in text or measure(look, 100.0) == pytest.approx(whole)
+
+
+def test_other_numbers_take_no_new_rasters():
+    canvas = RendererAgg(300, 40, 100.0)
+    put(canvas, Look("step +0.1234567890 of 9 at t = 5", 8.5, "#000000"), 5, 15)
+    before = lettering._raster.cache_info().misses
+    put(canvas, Look("step +0.9072 of 31 at t = 46.85", 8.5, "#000000"), 5, 15)
+    assert lettering._raster.cache_info().misses == before
 
 
 @pytest.mark.parametrize(("low", "high"), [(0.0, 1.0), (-3e-4, 2e-4), (190.0, 196.0), (1e6, 1e6 + 3), (-0.02, 5e7)])
