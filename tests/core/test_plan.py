@@ -12,7 +12,6 @@ import scipy.spatial
 import jaart
 from jaart.core import cell_table, cloud_surfels, filters, lights, meshes, picture, prepare, shade, surfels
 from jaart.core.assemble import evaluator, plan_of, rule_of, searcher
-from jaart.core.balls import CloudTracer
 from jaart.core.camera import Camera
 from jaart.core.chosen import arrival
 from jaart.core.errors import SettingsError
@@ -98,8 +97,7 @@ def test_what_is_planned_is_what_a_scene_keeps(made: str, name: str) -> None:
     hits = render(scene, settings, size=(12, 12))
     assert {stage: planned[stage].runs for stage in KEPT if stage != "placement" or scene.kind != "cloud"} == {
         stage: key in scene._kept for stage, key in KEPT.items() if stage != "placement" or scene.kind != "cloud"}
-    tracer = prepare.prepared(scene, settings).tracer
-    assert planned["centre fits"].runs == (isinstance(tracer, CloudTracer) and tracer.fits > 0)
+    assert planned["centre fits"].runs == planned["first guess"].runs == (hits.fits > 0)
     assert planned["search"].runs == (hits.hit.any() and name not in ("cylinder", "fill_level", "isosurface"))
 
 
@@ -266,7 +264,7 @@ SEARCHES = (stepping, probe, safe, march, minimise, centres)
 @pytest.mark.parametrize("search", [s for s in PARAMETERS["search"].choices if s != "auto"])
 def test_only_searches_that_are_said_to_ask_for_the_gradient(search: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene, settings, asked = lattice(), Settings(search=search), list[int]()
-    ready, kernel = prepare.prepared(scene, settings).tracer, searcher(check(scene, settings)).py_func
+    ready, kernel = prepare.prepared(scene, settings).tracer, searcher(scene, settings, check(scene, settings)).py_func
     cells = prepare.surfels(scene, settings).cells
 
     def evaluate(_: int, *args: Any) -> Any:
@@ -292,7 +290,7 @@ def test_only_searches_that_are_said_to_ask_for_the_gradient(search: str, monkey
 def test_a_miss_is_proven_where_that_is_planned(proof: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[str] = []
     scene, settings = lattice(), Settings(search="safe", proof=proof)
-    ready, kernel = prepare.prepared(scene, settings).tracer, searcher(check(scene, settings)).py_func
+    ready, kernel = prepare.prepared(scene, settings).tracer, searcher(scene, settings, check(scene, settings)).py_func
     cells = prepare.surfels(scene, settings).cells
     python(monkeypatch, [], safe, probe)
     monkeypatch.setattr(probe, "evaluate_at", lambda _, *args: tangent.tangent_surfel(*args))
