@@ -16,6 +16,7 @@ import numpy as np
 
 from jaart.core import prepare
 from jaart.core.kernels.weigh import WENDLAND_END
+from jaart.core.places import listed_near
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
 from jaart.core.tracers import OnLattice
@@ -211,7 +212,8 @@ def looked(scene: Scene, settings: Settings, origins: Array, directions: Array, 
     ready = prepare.prepared(scene, settings)
     assert isinstance(ready.tracer, OnLattice) and ready.values.weight in ("gaussian", "wendland")
     sites, h = ready.tracer.sites, ready.values.h
-    table = (sites.first, sites.columns, sites.shape, h, ready.values.weight == "gaussian", ready.values.off_centre)
+    first, _, columns = listed_near(sites, np.indices(sites.shape).reshape(3, -1).T)
+    table = (first, columns, sites.shape, h, ready.values.weight == "gaussian", ready.values.off_centre)
     found = np.empty(len(origins))
     pieces = np.array_split(np.arange(len(origins)), 64)
     with ThreadPoolExecutor(os.cpu_count()) as pool:

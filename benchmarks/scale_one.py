@@ -22,6 +22,7 @@ import jaart
 from benchmarks.footprint import MIB, peak, resident
 from benchmarks.scale_data import scene_of
 from jaart.core import prepare
+from jaart.core.places import places_of
 from jaart.core.prepare import Prepared
 from jaart.core.suited import suited
 
@@ -65,12 +66,9 @@ def settled() -> int | None:
 
 
 def touched(ready: Prepared) -> tuple[int, int]:
-    """Cells or balls that have neighbours written down, and the bytes of these: arrays as long as what is used."""
-    sites = ready.tracer.sites
-    gathered = getattr(ready.tracer, "gathered", None)
-    places = int((np.diff(sites.first) > 0).sum()) if gathered is None else int(gathered)
-    listed = int(sites.first[-1 if gathered is None else places])
-    return places, listed * (6 * sites.columns.itemsize + sites.ids.itemsize)
+    """Cells or balls whose neighbours were gathered, and the bytes of what was written down for them."""
+    kept = places_of(ready.tracer.sites).kept
+    return kept.gathered, kept.block_bytes
 
 
 def named_arrays(kept: dict[Any, Any]) -> dict[str, int]:

@@ -132,7 +132,7 @@ def _taken(hits: Hits) -> list[str]:
         ("eigenvector", hits.eigenvectors), ("gradient", hits.gradients))]
     if hits.gathered:
         fits = f", {_count(hits.fits, 'fit')} at their centres beside the evaluations" if hits.fits else ""
-        parts.append(f"{_count(hits.gathered, 'ball')} gathered{fits}")
+        parts.append(f"{_count(hits.gathered, 'place')} gathered{fits}")
     if lowered := int(hits.lowered.sum()):
         parts.append(f"{_count(lowered, 'evaluation')} of a lower degree than {hits.settings.degree}")
     return [f"{', '.join(each)} a ray; {', '.join(parts)}"]

@@ -75,7 +75,7 @@ def test_a_cloud_is_rendered_in_its_own_units_and_says_what_it_took(ball, capsys
     _, directions = Camera.fit((np.array((8.0, 18, 28)), np.array((12.0, 22, 32))), size=(40, 30)).rays((40, 30))
     assert np.abs(hits["direction"] - directions).max() < 0.01
     assert hits["shading_normal"] == "average" and hits["lowered"].sum() == 0
-    assert "balls gathered, " in out and "at their centres" in out and "wrote p.png, shading_normal = average" in out
+    assert "places gathered, " in out and "at their centres" in out and "wrote p.png, shading_normal = average" in out
     assert err == ""
 
 

@@ -18,7 +18,7 @@ import jaart
 from jaart import cli_progress
 from jaart.core.errors import Cancelled
 from jaart.core.io import load
-from jaart.core.pool import do_each
+from jaart.core.pieces import do_each
 from jaart.core.quality import quality
 from jaart.core.render import render
 from jaart.core.scene import Model, Scene

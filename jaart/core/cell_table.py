@@ -2,76 +2,91 @@
 
 from __future__ import annotations
 
-from threading import Event
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core import memory
+from jaart.core.bricks import BRICK, brick_slots
 from jaart.core.chosen import HALF_DIAGONAL, Chosen, counts_nearest
-from jaart.core.errors import Cancelled, SettingsError
 from jaart.core.kernels import table
+from jaart.core.kernels.cell_gather import gather_cell
 from jaart.core.kernels.records import Cell, Cells, Sites
+from jaart.core.places import Ints, Places, address, check, listed
 from jaart.core.scene import Array
 from jaart.core.surfels import Surfels
-from jaart.core.telling import tell
 
-#: The table is made for so many surfels at a time.
-SURFELS_AT_ONCE = 1024
 #: Nearest surfels are listed for cells up to so many cells from one with a surfel.
 KNN_HALO = 2
+#: A picture asks for about one cell a pixel; the surfels near so many are counted before it begins.
+CELLS_ASKED, CELLS_COUNTED = 1 << 18, 16
 
 
-def cell_table(found: Surfels, shape: Cell, values: Chosen, k: int, cancel: Event | None = None) -> Cells:
+def cell_table(found: Surfels, shape: Cell, values: Chosen, k: int) -> Cells:
     """A lattice's cells with the surfels that may count at a point in them.
 
     shape: cells along each axis; values: which neighbourhood, and its radius; k: of the nearest ones. A cell of
-    `ball` and `knn` lists what counts at any of its points; which of them counts at one, `weigh` decides. Raises
-    SettingsError when the table would not fit into memory, Cancelled after cancel was set.
+    `ball` and `knn` holds what counts at any of its points; which of them counts at one, `weigh` decides. The nearest
+    are listed at once, what lies within a radius when a ray asks. Raises SettingsError when what rays may ask for would
+    not fit into memory.
     """
     empty = np.full(shape, 255, np.uint8)
     empty[tuple(found.cells.T)] = 0
     table.fill_empty(empty)
     if counts_nearest(values.neighbourhood) and len(found):
         sites = _nearest(found, empty, k, exact=values.neighbourhood == "knn")
-    else:
-        more = HALF_DIAGONAL if values.neighbourhood == "ball" else 0.0
-        sites = _within(found, shape, values.radius + more, cancel)
-    counted = np.diff(sites.first).reshape(shape) > 0
-    halo = int(empty[counted].max(initial=0))
-    return Cells(sites, empty, halo, 0, 0.0)
+        return Cells(sites, empty, min(KNN_HALO, int(empty.max())), 0, 0.0)
+    radius = values.radius + (HALF_DIAGONAL if values.neighbourhood == "ball" else 0.0)
+    halo = table.widest(found.cells, found.offset, radius, empty, min(_cells_away(found, shape, radius), 255))
+    return Cells(_within(found, empty, radius, halo), empty, halo, 0, 0.0)
 
 
-def _within(found: Surfels, shape: Cell, radius: float, cancel: Event | None) -> Sites:
-    """Every cell's surfels within a radius of its centre."""
-    nobody, nothing = np.empty(0, np.int32), np.empty(0)
-    first = np.zeros(shape[0] * shape[1] * shape[2] + 1, np.int64)
-    _scan(found, radius, shape, first, first[1:], nobody, nothing, cancel)
-    np.cumsum(first, out=first)
-    _check_memory(int(first[-1]), f"radius = {radius:g} cells")
-    ids, columns = np.empty(first[-1], np.int32), np.empty(6 * first[-1])
-    _scan(found, radius, shape, first, np.zeros(len(first) - 1, np.int64), ids, columns, cancel)
-    return Sites(shape, np.empty((0, 3)), first, ids, columns)
+def _cells_away(found: Surfels, shape: Cell, radius: float) -> int:
+    """How many cells a cell and one with a surfel near it may be apart."""
+    farthest = radius + float(np.abs(found.offset).max(initial=0.0))
+    return int(min(farthest, max(shape)))
 
 
-def _check_memory(surfels: int, what: str) -> None:
-    needed = surfels * (6 * 8 + 4)
-    if needed > memory.limit():
-        raise SettingsError(f"{what}: needs {memory.words(needed)} of memory, more than the "
-                            f"{memory.words(memory.limit())} it may take")
+def _within(found: Surfels, empty: NDArray[np.uint8], radius: float, halo: int) -> Sites:
+    """The surfels within a radius of each cell's centre, which are gathered when somebody asks."""
+    shape = (empty.shape[0], empty.shape[1], empty.shape[2])
+    order, rows = _rows(found, shape)
+    lengths = np.array([radius, np.abs(found.offset).max(initial=0.0)])
+    own = [np.ascontiguousarray(a) for a in (found.cells, found.offset, found.normal)]
+    alive: tuple[NDArray[Any], ...] = (rows, order, *own, lengths)
+    addresses = [address(array) for array in alive]
+    source = [shape[0], shape[1], len(found), *addresses[:5], _cells_away(found, shape, radius), addresses[5]]
+    what = f"radius = {radius:g} cells"
+    near = _near_some(found, radius) * min(len(found), CELLS_ASKED)
+    check(near * (6 * 8 + 4), what)
+    slots = brick_slots(shape, _least(empty) <= halo) if len(found) else np.zeros(empty.size, np.int64)
+    return Places(shape, np.empty((0, 3)), slots, gather_cell, source, 6, 0, alive, what).sites
 
 
-def _scan(found: Surfels, radius: float, shape: Cell, first: NDArray[np.int64], counted: NDArray[np.int64],
-          ids: NDArray[np.int32], columns: Array, cancel: Event | None) -> None:
-    """Count or write the surfels near each cell, a few surfels at a time so that it can be cancelled."""
-    index, offset, normal = np.array(found.cells, np.int32), np.array(found.offset), np.array(found.normal)
-    for begin in range(0, len(found), SURFELS_AT_ONCE):
-        if cancel is not None and cancel.is_set():
-            raise Cancelled("the neighbour table was cancelled")
-        table.scan_near(index, offset, normal, begin, min(begin + SURFELS_AT_ONCE, len(found)), radius, shape,
-                        first, counted, ids, columns)
-        tell(begin + (len(found) if len(ids) else 0), 2 * len(found))
+def _near_some(found: Surfels, radius: float) -> float:
+    """The mean number of surfels within a radius of some of them."""
+    points, some = found.points, found.points[::max(len(found) // CELLS_COUNTED, 1)]
+    near = [int((((points - x) ** 2).sum(axis=1) <= radius * radius).sum()) for x in some]
+    return sum(near) / max(len(near), 1)
+
+
+def _rows(found: Surfels, shape: Cell) -> tuple[NDArray[np.int32], Ints]:
+    """The surfels in the order of their cells, and where each row of cells along z begins in it (nx·ny + 1,)."""
+    row = found.cells[:, 0].astype(np.int64) * shape[1] + found.cells[:, 1]
+    order = np.argsort(row * shape[2] + found.cells[:, 2], kind="stable").astype(np.int32)
+    return order, np.searchsorted(row[order], np.arange(shape[0] * shape[1] + 1))
+
+
+def _least(empty: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """The least distance from a surfel in each brick."""
+    for axis in range(3):
+        lines = np.moveaxis(empty, axis, 0)
+        least = lines[::BRICK].copy()
+        for first in range(1, BRICK):
+            part = lines[first::BRICK]
+            np.minimum(least[:len(part)], part, out=least[:len(part)])
+        empty = np.moveaxis(least, 0, axis)
+    return empty
 
 
 def _nearest(found: Surfels, empty: NDArray[np.uint8], k: int, exact: bool) -> Sites:
@@ -93,11 +108,11 @@ def _nearest(found: Surfels, empty: NDArray[np.uint8], k: int, exact: bool) -> S
         ids = np.concatenate(lists).astype(np.int32) if len(lists) else np.empty(0, np.int32)
     else:
         ids, sizes = np.sort(ids, axis=1).astype(np.int32).ravel(), np.full(len(cells), len(ids[0]), np.int64)
-    _check_memory(len(ids), f"k = {k}")
+    check(len(ids) * (6 * 8 + 4), f"k = {k}")
     counts = np.zeros(empty.size + 1, np.int64)
     counts[1 + np.ravel_multi_index(tuple(cells.T), empty.shape)] = sizes
-    shape: Any = empty.shape
-    return Sites(shape, np.empty((0, 3)), np.cumsum(counts), ids, _columns(found, cells, sizes, ids))
+    shape = (empty.shape[0], empty.shape[1], empty.shape[2])
+    return listed(shape, np.empty((0, 3)), np.cumsum(counts), ids, _columns(found, cells, sizes, ids))
 
 
 def _columns(found: Surfels, cells: NDArray[np.intp], sizes: NDArray[np.int64], ids: NDArray[np.int32]) -> Array:

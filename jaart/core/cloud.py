@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels.cover import keep
-from jaart.core.pool import do_each
+from jaart.core.pieces import do_each
 from jaart.core.scene import Array, Scene, frozen
 from jaart.core.telling import tell
 

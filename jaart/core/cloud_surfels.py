@@ -48,17 +48,23 @@ def points_of(scene: Scene, settings: Settings, values: Chosen) -> Points:
     return Points(points, made.normal, made.notes)
 
 
+def has_normals(scene: Scene, settings: Settings, values: Chosen) -> bool:
+    """Whether a cloud's points have normals, their own or estimated ones."""
+    return scene.normals is not None or estimates_normals(scene, settings, values)
+
+
 def cloud_of(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
     """Points in a grid, balls that cover them and a tree over these, for a neighbourhood."""
-    points, found = cloud.local_points(scene), points_of(scene, settings, values)
+    points = cloud.local_points(scene)
+    normals = points_of(scene, settings, values).normal if has_normals(scene, settings, values) else np.empty((0, 3))
     if values.method == "cylinder":
-        return _discs(scene, points, found.normal, values.h)
+        return _discs(scene, points, normals, values.h)
     kept = cloud.cover(scene, settings.ball_k)
     centres, radii = np.array(points[kept]), np.array(cloud.ball_radii(scene, settings.ball_k)[kept])
     if alone(scene):  # nothing but h says how large a single surfel is
         radii[:] = values.h
     reach = radii + values.radius if values.neighbourhood == "ball" else _reach(scene, settings.k, kept, radii)
-    return Cloud(_grid(points, found.normal, float(np.median(reach))), centres, radii, reach,
+    return Cloud(_grid(points, normals, float(np.median(reach))), centres, radii, reach,
                  ball_tree(centres, radii), cloud.offset(scene))
 
 
@@ -83,11 +89,12 @@ def _reach(scene: Scene, k: int, kept: NDArray[np.int64], radii: Array) -> Array
 
 
 def _grid(points: Array, normals: Array, edge: float) -> Grid:
-    """The points sorted by the cells of a grid, about as wide as a neighbourhood."""
+    """The points sorted by the cells of a grid, about as wide as a neighbourhood; normals: (N, 3), or (0, 3)."""
     low, size = points.min(axis=0), np.ptp(points, axis=0)
     edge = max(edge, float(size.max()) / MOST_CELLS) or 1.0
     shape = (size / edge).astype(np.int64) + 1
     cell = np.minimum(((points - low) / edge).astype(np.int64), shape - 1)
     keys = (cell[:, 0] * shape[1] + cell[:, 1]) * shape[2] + cell[:, 2]
     order = np.argsort(keys, kind="stable")
-    return Grid(np.array(low), edge, shape, keys[order], points[order], normals[order], order)
+    return Grid(np.array(low), edge, shape, keys[order], points[order], normals[order] if len(normals) else normals,
+                order.astype(np.int32))

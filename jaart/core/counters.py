@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from jaart.core.balls import CloudTracer
+from jaart.core.mesh_tracer import MeshTracer
+from jaart.core.places import places_of
 from jaart.core.tracers import Tracer
 
 
@@ -19,8 +20,11 @@ class Made(NamedTuple):
 
 
 def made_by(tracer: Tracer) -> Made:
-    """What a tracer has made so far; a lattice's table and a mesh are whole before the first ray."""
-    return Made(tracer.gathered, tracer.fits) if isinstance(tracer, CloudTracer) else Made()
+    """What a tracer has made so far; a mesh, and lists of nearest surfels, are whole before the first ray."""
+    if isinstance(tracer, MeshTracer):
+        return Made()
+    kept = places_of(tracer.sites).kept
+    return Made(kept.gathered, kept.fits)
 
 
 def since(before: Made, tracer: Tracer) -> Made:

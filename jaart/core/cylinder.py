@@ -6,17 +6,19 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from jaart.core.cell_table import cell_table
 from jaart.core.chosen import HALF_DIAGONAL, Chosen
 from jaart.core.kernels import cylinder
-from jaart.core.kernels.records import LOG_WIDTH, Cells, Out, Plan
+from jaart.core.kernels.records import LOG_WIDTH, Cells, Out, Plan, Sites
+from jaart.core.places import Pool
 from jaart.core.scene import Array
 from jaart.core.surfels import Surfels
 from jaart.core.tiles import Pixels, columns_for
-from jaart.core.tracers import NO_BEGINS, NO_LOG, OnLattice
+from jaart.core.tracers import NO_BEGINS, NO_LOG, OnLattice, all_of
 
 #: Room for rounding in a neighbourhood's radius, in cells.
 _ROUNDING = 1e-6
@@ -35,7 +37,12 @@ class CylinderTracer(OnLattice):
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
               any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
         """Trace some rays into their rows of the columns; see `Tracer`. The first hit costs no more than any."""
-        return int(cylinder.cylinder_rays(self.cells, self.radius, origins, directions, pixels, out, log))
+        def rest(sites: Sites, pool: Pool, rays: Pixels) -> tuple[int, int]:
+            done, written = cylinder.cylinder_rays(self.cells._replace(sites=sites), self.radius, origins, directions,
+                                                   rays, out, log)
+            return done, written
+
+        return all_of(self.sites, pixels, rest)
 
 
 def reach(radius: float) -> float:
@@ -61,10 +68,12 @@ def cylinder_tracer(values: Chosen, plan: Plan, cells: Callable[[Chosen], Cells]
 def warm_up() -> None:
     """Run the kernels once, so that none compiles later."""
     found = Surfels(np.array([[1, 1, 1]], np.int32), np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]))
-    sites = cell_table(found, (3, 3, 3), _SMALL, 1)
-    cylinder.cylinder_rays(sites, 1.0, np.array([[1.5, 1.5, 9.0]]), np.array([[0.0, 0.0, -1.0]]), np.zeros(1, np.int64),
-                           columns_for(1), np.empty((1, LOG_WIDTH)))
-    cylinder.write_shares(sites.sites, (1, 1, 1), (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), 1.0, np.empty(2))
+    plan: Any = None
+    small = cell_table(found, (3, 3, 3), _SMALL, 1)
+    tracer = CylinderTracer(lambda: small, plan, 1.0)
+    tracer.trace(np.array([[1.5, 1.5, 9.0]]), np.array([[0.0, 0.0, -1.0]]), np.zeros(1, np.int64), columns_for(1),
+                 np.empty((1, LOG_WIDTH)))
+    cylinder.write_shares(tracer.sites, (1, 1, 1), (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), 1.0, np.empty(2))
 
 
 _SMALL = Chosen(method="cylinder", search="iterate", weight="gaussian", normal="surfel", neighbourhood="cell_ball",

@@ -13,9 +13,9 @@ from jaart.core.errors import SettingsError
 from jaart.core.kernels import field
 from jaart.core.kernels import records as r
 from jaart.core.kernels.records import Cells, Plan, Vector
-from jaart.core.pool import do_each
+from jaart.core.pieces import do_each
+from jaart.core.places import served
 from jaart.core.scene import Array
-from jaart.core.tracers import scratch
 
 #: Numbers of the energies whose isosurface is made; tangent is |f|, tangent_step |e_ts| along a direction.
 ENERGIES = {"tangent": r.TANGENT, "tangent_step": r.TANGENT_STEP, "off_centre": r.OFF_CENTRE,
@@ -50,10 +50,6 @@ class Energy:
         how = self.plan.how._replace(energy=ENERGIES[self.name], emphasise=int(self.emphasise))
         return self.plan._replace(how=how)
 
-    def scratch(self) -> tuple[Array, Array]:
-        """Room for the weights and fits of the cell with the most surfels, for one thread."""
-        return scratch(int(np.diff(self.cells.sites.first).max(initial=0)))
-
 
 def energy_field(energy: Energy, divisions: int, threads: int | None = None, cancel: Event | None = None,
                  progress: Progress | None = None) -> Array:
@@ -69,7 +65,8 @@ def energy_field(energy: Energy, divisions: int, threads: int | None = None, can
     values = np.full(shape, np.nan)
 
     def layer(number: int) -> None:
-        field.sample_layer(sites, plan, energy.direction, divisions, number, values, *energy.scratch())
+        served(sites, lambda own, pool: field.sample_layer(own, plan, energy.direction, divisions, number, values,
+                                                           pool.work, pool.fit))
 
     do_each(layer, range(sites.shape[0]), threads, cancel, progress)
     return values
@@ -86,8 +83,8 @@ def energy_gradients(energy: Energy, points: Array, threads: int | None = None, 
 
     def some(first: int) -> None:
         part = slice(first, first + POINTS_AT_ONCE)
-        field.write_gradients(sites, plan, energy.direction, WIDTH * plan.rule.h, at[part], result[part],
-                              *energy.scratch())
+        served(sites, lambda own, pool: field.write_gradients(own, plan, energy.direction, WIDTH * plan.rule.h,
+                                                              at[part], result[part], pool.work, pool.fit))
 
     do_each(some, range(0, len(points), POINTS_AT_ONCE), threads, cancel, progress)
     return result

@@ -45,7 +45,7 @@ def isosurface(scene: Scene, settings: Settings | None = None, energy: str | Non
         values = warm_up(scene, asked)
         if asked.method == "fill_level":
             return level_mesh(prepare.levels(scene, asked), asked, values.level, edges(scene))
-        made = Energy(prepare.cells(scene, asked, values, cancel), plan_of(scene, asked, values), name,
+        made = Energy(prepare.cells(scene, asked, values), plan_of(scene, asked, values), name,
                       asked.emphasise, along)
         return energy_mesh(made, asked.subdivide, values.level, threads, cancel, progress)
 

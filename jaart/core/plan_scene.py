@@ -49,8 +49,10 @@ def _table(scene: Scene, settings: Settings, values: Chosen) -> Stage:
     if not evaluates(values):
         return Stage("cell table", False, _PICKED, ("method",))
     if values.method == "cylinder":
-        return Stage("cell table", True, "of all surfels that a cylinder in a cell may hold", ("method", "h"))
-    return Stage("cell table", True, f"{_near(settings, values)} of each cell", ("neighbourhood", "radius", "k"))
+        return Stage("cell table", True, "of all surfels that a cylinder in a cell may hold, gathered when a ray first "
+                     "asks", ("method", "h"))
+    when = "" if counts_nearest(values.neighbourhood) else ", gathered when a ray first asks"
+    return Stage("cell table", True, f"{_near(settings, values)} of each cell{when}", ("neighbourhood", "radius", "k"))
 
 
 def _balls(scene: Scene, settings: Settings, values: Chosen) -> Stage:
@@ -67,7 +69,11 @@ def _unasked(scene: Scene, values: Chosen) -> Stage:
     """The neighbourhoods of places that no ray visits."""
     if scene.kind == "cloud":
         return Stage("neighbours not asked for", False, "a ball has none until a ray asks")
-    return stage("neighbours not asked for", evaluates(values), "the table is of all cells at once", _PICKED, "method")
+    if not evaluates(values):
+        return Stage("neighbours not asked for", False, _PICKED, ("method",))
+    return stage("neighbours not asked for", meaning.weighs(values) and counts_nearest(values.neighbourhood),
+                 "the nearest surfels are listed for all cells at once", "a cell has none until a ray asks",
+                 "neighbourhood")
 
 
 def _distance_field(scene: Scene, values: Chosen) -> Stage:

@@ -70,11 +70,11 @@ def surfels(scene: Scene, settings: Settings) -> Surfels:
                       lambda: make_surfels(levels(scene, settings), settings, extents.edges(scene)))
 
 
-def cells(scene: Scene, settings: Settings, values: Chosen, cancel: Event | None = None) -> Cells:
+def cells(scene: Scene, settings: Settings, values: Chosen) -> Cells:
     """The neighbourhoods of a lattice's cells and the field of empty space."""
     def make() -> Cells:
         shape = stretched_shape(levels(scene, settings).shape, extents.edges(scene))
-        return cell_table(surfels(scene, settings), shape, values, settings.k, cancel)
+        return cell_table(surfels(scene, settings), shape, values, settings.k)
 
     return scene.once("cells", (settings.key("neighbours"), values.radius), make)
 
@@ -84,13 +84,13 @@ def tracer(scene: Scene, settings: Settings, values: Chosen, cancel: Event | Non
     if scene.kind == "cloud":
         return cloud_tracer(scene, settings, values)
     if values.method in MESHES:
-        return mesh_tracer(scene, settings, values, lambda: cells(scene, settings, values, cancel),
+        return mesh_tracer(scene, settings, values, lambda: cells(scene, settings, values),
                            plan_of(scene, settings, values), levels(scene, settings), cancel)
     if values.method == "cylinder":
         ball = settings.replace(neighbourhood="cell_ball")
-        return cylinder_tracer(values, plan_of(scene, settings, values), lambda near: cells(scene, ball, near, cancel))
+        return cylinder_tracer(values, plan_of(scene, settings, values), lambda near: cells(scene, ball, near))
     uniform = values.stride if settings.traversal == "uniform" else 0.0
-    made = cells(scene, settings, values, cancel)._replace(stretches=int(meaning.stretches(values)), uniform=uniform)
+    made = cells(scene, settings, values)._replace(stretches=int(meaning.stretches(values)), uniform=uniform)
     return LatticeTracer(lambda: made, plan_of(scene, settings, values))
 
 

@@ -11,6 +11,7 @@ from jaart.core.errors import RayError
 from jaart.core.kernels import cylinder, energies
 from jaart.core.kernels import records as r
 from jaart.core.kernels.records import Out
+from jaart.core.places import neighbours_of, served
 from jaart.core.prepare import Prepared
 from jaart.core.records import STATUS_NAMES, Array, Curves, Trace
 from jaart.core.render import unit
@@ -93,17 +94,16 @@ def _neighbours(ready: Prepared, rows: Array, d: Array) -> tuple[tuple[NDArray[n
     sites, rule = ready.tracer.sites, ready.tracer.plan.rule
     ids, weights = [], []
     for row, place in zip(rows, _step_places(rows), strict=True):
-        cloud = sites.shape[0] == 0
-        number = place[0] if cloud else np.ravel_multi_index(place, sites.shape)
-        first, last = sites.first[number], sites.first[number + 1]
-        x, w = row[r.X:r.Z + 1] - (sites.centres[number] if cloud else place + 0.5), np.empty(2 * (last - first))
+        near = neighbours_of(sites, tuple(place.tolist()))
+        centre = sites.centres[place[0]] if sites.shape[0] == 0 else place + 0.5
+        x, w = row[r.X:r.Z + 1] - centre, np.empty(2 * len(near))
         cell, at = tuple(place.tolist()), tuple(x.tolist())
         if ready.values.method == "cylinder":
             cylinder.write_shares(sites, cell, at, tuple(d.tolist()), ready.values.h, w)
         else:
             energies.write_weights(sites, cell, at, rule, w)
-        w = w[:last - first]
-        ids.append(sites.ids[first:last][w > 0].astype(np.int64))
+        w = w[:len(near)]
+        ids.append(near[w > 0].astype(np.int64))
         weights.append(frozen(w[w > 0]))
     return tuple(ids), tuple(weights)
 
@@ -111,6 +111,7 @@ def _neighbours(ready: Prepared, rows: Array, d: Array) -> tuple[tuple[NDArray[n
 def _curves(ready: Prepared, o: Array, d: Array, path: Path) -> Curves:
     """The energies along the path."""
     values, tracer = np.empty((4, len(path.ts))), ready.tracer
-    energies.sample(tracer.sites, tracer.plan, tuple((o - tracer.offset).tolist()), tuple(d.tolist()), path.ts,
-                    path.places, values, *tracer.scratch())
+    origin, direction = tuple((o - tracer.offset).tolist()), tuple(d.tolist())
+    served(tracer.sites, lambda own, pool: energies.sample(own, tracer.plan, origin, direction, path.ts, path.places,
+                                                           values, pool.work, pool.fit))
     return Curves(frozen(path.ts), *(frozen(v) for v in values))

@@ -25,7 +25,7 @@ class Path:
 
     cells: (C, 3) crossed, in order; borders: (C + 1,) the t where it crosses into each; with_surfel: (C,); balls:
     (B, 4) centre and radius of those pierced, in order; ts: (K,) where energies are sampled; places: (K, 3) the cell
-    or ball whose neighbourhood counts there; slots: (B,) of the balls, as the tracer has them.
+    or ball whose neighbourhood counts there; slots: (B,) numbers of the balls in the tracer.
     """
 
     cells: Ints
@@ -81,7 +81,7 @@ def cloud_path(tracer: CloudTracer, o: Array, d: Array) -> Path:
 
 def pierced(tracer: CloudTracer, o: Array, d: Array) -> tuple[NDArray[np.int64], Array]:
     """The gathered balls ahead that a ray pierces, in order, and where it enters and leaves each (B, 2)."""
-    slots = np.arange(tracer.gathered)
+    slots = tracer.asked
     centres, radii = tracer.ball(slots)
     foot = (centres - o) @ d
     aside = np.linalg.norm(centres - o - foot[:, None] * d, axis=1)

@@ -10,15 +10,13 @@ from typing import Protocol
 import numpy as np
 
 from jaart.core.kernels import beams, ray
-from jaart.core.kernels.guess import GUESS_WIDTH
 from jaart.core.kernels.packet import ROOM
 from jaart.core.kernels.pinhole import EDGE, View
-from jaart.core.kernels.records import FIT_SIZE, LOG_WIDTH, Cells, Out, Plan, Sites
+from jaart.core.kernels.records import LOG_WIDTH, Cells, Out, Plan, Sites
+from jaart.core.places import Pool, served
 from jaart.core.scene import Array
 from jaart.core.tiles import Pixels
 
-#: Scratch for each surfel that may be near a point: its weight, its place in the local frame, its row of a fit.
-SCRATCH_A_SURFEL = 24
 #: A log without room: nothing is written down.
 NO_LOG = np.empty((0, LOG_WIDTH))
 #: Nothing is known of where rays can meet anything.
@@ -39,9 +37,6 @@ class Tracer(Protocol):
     @property
     def offset(self) -> Array:
         """Origin (3,) of the frame that places are in."""
-
-    def scratch(self) -> tuple[Array, Array]:
-        """Room for the weights and fits of the place with the most surfels, for one thread."""
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
               any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
@@ -80,18 +75,9 @@ class OnLattice:
         """A lattice is computed in its own frame."""
         return np.zeros(3)
 
-    def scratch(self) -> tuple[Array, Array]:
-        """Room for the weights and fits of the cell with the most surfels."""
-        return scratch(self.most)
-
     def blocks(self, view: View) -> Array:
         """Nothing is known but where a search goes cell by cell."""
         return NO_BLOCKS
-
-    @cached_property
-    def most(self) -> int:
-        """Surfels of the cell that has most near it."""
-        return int(np.diff(self.cells.sites.first).max(initial=0))
 
 
 class LatticeTracer(OnLattice):
@@ -101,8 +87,13 @@ class LatticeTracer(OnLattice):
               any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
         """Trace some rays into their rows of the columns; see `Tracer`."""
         packet = np.empty(ROOM)
-        return int(ray.trace_rays(self.cells, self.plan, origins, directions, begins, pixels, out, log, packet,
-                                  *self.scratch()))
+
+        def rest(sites: Sites, pool: Pool, rays: Pixels) -> tuple[int, int]:
+            done, written = ray.trace_rays(self.cells._replace(sites=sites), self.plan, origins, directions, begins,
+                                           rays, out, log, packet, pool.work, pool.fit)
+            return done, written
+
+        return all_of(self.sites, pixels, rest)
 
     def blocks(self, view: View) -> Array:
         """The t before which no ray of a block comes near a surfel; not for even steps, which count from the border."""
@@ -114,6 +105,17 @@ class LatticeTracer(OnLattice):
         return blocks
 
 
-def scratch(most: int) -> tuple[Array, Array]:
-    """Room for the weights and fits of so many surfels, and for what is kept of a centre, for one thread."""
-    return np.empty(SCRATCH_A_SURFEL * max(most, 1)), np.zeros(FIT_SIZE + GUESS_WIDTH)
+def all_of(sites: Sites, pixels: Pixels, rest: Callable[[Sites, Pool, Pixels], tuple[int, int]]) -> int:
+    """Trace rays until none is left; returns the rows written to the log.
+
+    rest: traces rays until its pool is short of room; returns how many of them, and the rows.
+    """
+    left = pixels
+
+    def ask(own: Sites, pool: Pool) -> int:
+        nonlocal left
+        done, written = rest(own, pool, left)
+        left = left[done:]
+        return written
+
+    return served(sites, ask)

@@ -19,15 +19,16 @@ from jaart.core.chosen import Chosen, chosen
 from jaart.core.cloud_surfels import cloud_of
 from jaart.core.errors import SettingsError
 from jaart.core.groups.surface import MESHES
-from jaart.core.kernels import ball_ray, beams, energies, packet, pinhole, ray, traversal
+from jaart.core.kernels import ball_ray, beams, energies, pinhole, ray, traversal
 from jaart.core.kernels.records import LOG_WIDTH, Cells, Plan
 from jaart.core.parameter import Length
+from jaart.core.places import neighbours_of, served
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings
 from jaart.core.surfels import Surfels
 from jaart.core.telling import told
 from jaart.core.tiles import columns_for
-from jaart.core.tracers import scratch
+from jaart.core.tracers import LatticeTracer
 
 _LOCK = threading.RLock()
 _O, _D = (1.5, 1.5, 9.0), (0.0, 0.0, -1.0)
@@ -86,8 +87,8 @@ def _small() -> tuple[Cells, Plan]:
 def _lattice() -> None:
     cells, plan = _small()
     beams.write_blocks(_VIEW, cells.empty, 1, 0, 1, np.empty((1, 1)))
-    ray.trace_rays(cells, plan, np.array([_O]), np.array([_D]), np.empty(0), np.zeros(1, np.int64), columns_for(1),
-                   np.empty((2, LOG_WIDTH)), np.empty(packet.ROOM), *scratch(2))
+    LatticeTracer(lambda: cells, plan).trace(np.array([_O]), np.array([_D]), np.zeros(1, np.int64), columns_for(1),
+                                     np.empty((2, LOG_WIDTH)))
 
 
 @functools.cache
@@ -104,6 +105,7 @@ def _cloud() -> None:
 def _tracing() -> None:
     cells, plan = _small()
     traversal.crossed(np.array(_O), np.array(_D), (3, 4, 3), np.empty((13, 3), np.int32), np.empty(14))
-    energies.sample(cells.sites, plan, _O, _D, np.array([7.5]), np.array([[1, 1, 1]]), np.empty((4, 1)),
-                    *scratch(2))
+    served(cells.sites, lambda own, pool: energies.sample(own, plan, _O, _D, np.array([7.5]), np.array([[1, 1, 1]]),
+                                                          np.empty((4, 1)), pool.work, pool.fit))
+    neighbours_of(cells.sites, (1, 1, 1))
     energies.write_weights(cells.sites, (1, 1, 1), (0.0, 0.0, 0.0), plan.rule, np.empty(4))

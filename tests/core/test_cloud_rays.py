@@ -143,7 +143,7 @@ def test_a_ray_gathers_only_balls_that_it_pierces() -> None:
     scene = fresh("bumpy", 2000)
     hit = render(scene, settings, rays=along)
     tracer = tracer_of(scene, settings)
-    centres, radii = tracer.ball(np.arange(tracer.gathered))
+    centres, radii = tracer.ball(tracer.asked)
     foot = (centres - along[0]) @ along[1][0]
     aside = np.linalg.norm(centres - along[0] - foot[:, None] * along[1], axis=1)
     assert 0 < tracer.gathered <= 25 and (aside <= radii).all()

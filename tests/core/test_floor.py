@@ -11,11 +11,12 @@ from benchmarks import floor, raw_moments
 from benchmarks.floor import H, Rays
 from jaart.core import prepare
 from jaart.core.kernels import records as r
-from jaart.core.kernels.records import End, Sites, Start
+from jaart.core.kernels.records import End, Start
 from jaart.core.kernels.stepping import step_search
+from jaart.core.places import listed, scratch
 from jaart.core.render import render
 from jaart.core.scene import Scene
-from jaart.core.tracers import NO_LOG, scratch
+from jaart.core.tracers import NO_LOG
 
 #: Evaluations a ray that reaches 1e-14 h may take from h/2 above the surface.
 MOST = {"newton": 4.5, "secant": 6.0, "iterate": 8.5}
@@ -40,7 +41,7 @@ def searched(scene: Scene, search: str, o: np.ndarray, d: np.ndarray) -> End:
     centre = scene.points[np.argmin(((scene.points - o) ** 2).sum(axis=1))]
     columns = np.concatenate((scene.points - centre, scene.normals), axis=1).T.ravel()
     count = len(scene.points)
-    sites = Sites((0, 0, 0), centre[None].copy(), np.array([0, count]), np.arange(count, dtype=np.int32), columns)
+    sites = listed((0, 0, 0), centre[None].copy(), np.array([0, count]), np.arange(count, dtype=np.int32), columns)
     x, y, z = (o - centre).tolist()
     start = Start((0, 0, 0), (x, y, z), 0.0, 0.0, -1.0, 1.0, math.nan, 0)
     found: End = step_search(sites, plan.rule, plan.how, plan.bounds, tuple(d.tolist()), start, NO_LOG, 0,

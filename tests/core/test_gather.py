@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jaart.core.balls import Cloud, gathered
+from jaart.core.balls import Cloud, CloudTracer
 from jaart.core.cloud_surfels import _grid
-from jaart.core.kernels.gather import Grid, cells_of, gather
+from jaart.core.kernels.gather import Grid, cells_of
+from jaart.core.places import listed_near
 from jaart.core.tree import ball_tree
 
 RNG = np.random.default_rng(3)
@@ -34,6 +35,12 @@ def normals(count: int) -> np.ndarray:
 def cloud_of(points: np.ndarray, centres: np.ndarray, radii: np.ndarray, edge: float) -> Cloud:
     return Cloud(_grid(points, normals(len(points)), edge), centres, radii, radii, ball_tree(centres, radii),
                  np.zeros(3))
+
+
+def gathered(made: Cloud, balls: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What is near some balls, as rays gather it."""
+    sites = CloudTracer(made, None, True, False).sites  # type: ignore[arg-type]
+    return listed_near(sites, np.column_stack((balls, np.zeros((len(balls), 2), np.int64))))
 
 
 def within(points: np.ndarray, centre: np.ndarray, radius: float) -> set[int]:
@@ -86,6 +93,6 @@ def test_no_ball_looks_through_more_rows_of_cells_than_there_are_points(radius: 
     grid: Grid = _grid(points, points, 1e-3)
     assert int(grid.shape.min()) > 1_000_000
     assert cells_of(grid, centre, radius)[2] <= len(points)
-    first = np.zeros(2, np.int64)
-    gather(grid, np.array([centre]), np.array([radius]), first, np.empty(0, np.int32), np.empty(0), 0)
-    assert first[1] == len(within(points, np.array(centre), radius))
+    made = Cloud(grid, np.array([centre]), np.array([radius]), np.array([radius]),
+                 ball_tree(np.zeros((1, 3)), np.ones(1)), np.zeros(3))
+    assert set(gathered(made, np.zeros(1, np.int64))[1].tolist()) == within(points, np.array(centre), radius)

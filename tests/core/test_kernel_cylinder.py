@@ -12,9 +12,8 @@ from jaart.core import prepare
 from jaart.core.camera import Camera
 from jaart.core.cell_table import cell_table
 from jaart.core.chosen import chosen
-from jaart.core.cylinder import with_reach
+from jaart.core.cylinder import CylinderTracer, with_reach
 from jaart.core.io import load
-from jaart.core.kernels import cylinder
 from jaart.core.kernels import records as r
 from jaart.core.quality import quality
 from jaart.core.records import STATUS_NAMES
@@ -61,6 +60,11 @@ def cells_of(name: str, radius: float) -> r.Cells:
     return cell_table(found, SHAPE, with_reach(values), 1)
 
 
+def trace_all(cells: r.Cells, radius: float, origin: Array, direction: Array, pixels: np.ndarray, out: r.Out) -> None:
+    tracer = CylinderTracer(lambda: cells, None, radius)  # type: ignore[arg-type]
+    tracer.trace(origin, direction, pixels, out)
+
+
 @cache
 def rays(count: int) -> tuple[Array, Array]:
     """Rays from around the lattice and from within it, and some along its axes and in faces between its cells."""
@@ -105,7 +109,7 @@ NAMES = {"hit": r.CONVERGED, "background": r.BACKGROUND, "undefined_normal": r.U
 def test_it_is_what_the_oracle_says(name: str, radius: float) -> None:
     origin, direction = rays(150)
     out = columns_for(150)
-    cylinder.cylinder_rays(cells_of(name, radius), radius, origin, direction, np.arange(150), out, np.empty((0, 18)))
+    trace_all(cells_of(name, radius), radius, origin, direction, np.arange(150), out)
     hits = 0
     for i in range(150):
         found = expected(name, origin[i], direction[i], radius)
@@ -131,7 +135,7 @@ def test_it_is_what_the_oracle_says(name: str, radius: float) -> None:
 def test_a_plane_is_exact_from_any_direction() -> None:
     origin, direction = rays(150)
     out = columns_for(150)
-    cylinder.cylinder_rays(cells_of("plane", 1.6), 1.6, origin, direction, np.arange(150), out, np.empty((0, 18)))
+    trace_all(cells_of("plane", 1.6), 1.6, origin, direction, np.arange(150), out)
     hit = out.status == r.CONVERGED
     assert hit.sum() > 40
     assert (out.point[hit] - SIZE / 2) @ np.array(TILTED) == pytest.approx(0.0, abs=1e-12)
@@ -146,7 +150,7 @@ def test_opposite_surfels_have_no_normal_and_bad_rays_no_meaning() -> None:
     direction = np.array([[0, 0, -1.0], [0, 0, -1.0], [0, 0, 1.0]])
     out = columns_for(3)
     cells = cell_table(found, (3, 3, 3), with_reach(values), 1)
-    cylinder.cylinder_rays(cells, 0.5, origin, direction, np.arange(3), out, np.empty((0, 18)))
+    trace_all(cells, 0.5, origin, direction, np.arange(3), out)
     assert out.status.tolist() == [r.UNDEFINED_NORMAL, r.BAD_RAY, r.BACKGROUND]
     assert np.isnan(out.t).all() and np.isnan(out.point).all()
 

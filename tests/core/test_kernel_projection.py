@@ -38,7 +38,7 @@ TILTED = unit([1.0, -2.0, 3.0])
 
 def near_of(points: Points, normals: Points) -> r.Near:
     columns = np.concatenate([np.array(points).T.ravel(), np.array(normals).T.ravel()])
-    return r.Near(columns, np.uint64(0), np.uint64(len(points)))
+    return r.Near(columns, np.uint64(0), np.uint64(len(points)), np.uint64(len(points)))
 
 
 def three(a: list[float]) -> r.Vector:

@@ -32,16 +32,16 @@ from jaart.core.kernels import (
     tangent,
 )
 from jaart.core.kernels import records as r
-from jaart.core.kernels.near import surfels_near as compiled_near
-from jaart.core.kernels.records import FIT_SIZE, Near, Sites, Start
+from jaart.core.kernels.records import FIT_SIZE, Start
 from jaart.core.meaning import check
+from jaart.core.places import served
 from jaart.core.plan import RESOLVED, Plan, plan
 from jaart.core.render import render
 from jaart.core.scene import Model, Scene, frozen
 from jaart.core.settings import PARAMETERS, Settings, preset
 from jaart.core.shapes import Sphere
 from tests.core.cloud_scenes import fresh
-from tests.core.kernel_calls import near_of, work_for
+from tests.core.kernel_calls import asked_cells, near_at, near_of, work_for
 
 #: What a scene keeps of a stage after rays were traced.
 KEPT = {"fill levels": "levels", "placement": "surfels", "estimated normals": "normals", "cell table": "cells",
@@ -142,13 +142,15 @@ def test_trees_and_the_distance_field(made: str, given: dict[str, Any], monkeypa
     assert planned["tree"].runs == (("ball_tree" if made == "cloud" else "cKDTree") in calls)
 
 
-@pytest.mark.parametrize("made", ["lattice", "cloud"])
-def test_only_a_table_has_neighbours_that_no_ray_asked_for(made: str) -> None:
-    scene, settings = MADE[made](), Settings()
-    hits = render(scene, settings, size=(2, 2))
+@pytest.mark.parametrize(("made", "given"), [("lattice", {}), ("cloud", {}), ("lattice", {"neighbourhood": "knn"}),
+                                             ("lattice", {"neighbourhood": "cell_knn"})])
+def test_neighbours_that_no_ray_asked_for(made: str, given: dict[str, Any]) -> None:
+    scene, settings = MADE[made](), Settings(**given)
     tracer = prepare.prepared(scene, settings).tracer
-    ready = tracer.gathered if isinstance(tracer, CloudTracer) else np.count_nonzero(np.diff(tracer.sites.first))
-    assert plan(scene, settings)["neighbours not asked for"].runs == (ready > hits.cells.sum())
+    before = len(asked_cells(tracer.sites)) if made == "lattice" else np.count_nonzero(tracer.sites.slots)
+    hits = render(scene, settings, size=(4, 4))
+    assert before > 0 or 0 < hits.gathered <= hits.cells.sum()
+    assert plan(scene, settings)["neighbours not asked for"].runs == (before > hits.cells.sum())
 
 
 @pytest.mark.parametrize("made", ["lattice", "cloud"])
@@ -261,12 +263,6 @@ def test_what_an_evaluation_sums(made: str, normal: str, method: str, monkeypatc
 SEARCHES = (stepping, probe, safe, march, minimise, centres)
 
 
-def surfels_near(sites: Sites, place: Any) -> Near:
-    """The surfels near a place, their numbers unsigned as kernels hand them to each other."""
-    near = compiled_near(sites, place)
-    return Near(near.columns, np.uint64(near.base), np.uint64(near.size))
-
-
 @pytest.mark.parametrize("search", [s for s in PARAMETERS["search"].choices if s != "auto"])
 def test_only_searches_that_are_said_to_ask_for_the_gradient(search: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene, settings, asked = lattice(), Settings(search=search), list[int]()
@@ -279,14 +275,15 @@ def test_only_searches_that_are_said_to_ask_for_the_gradient(search: str, monkey
 
     python(monkeypatch, [], *SEARCHES)
     for module in SEARCHES:
-        for name, call in (("evaluate_at", evaluate), ("surfels_near", surfels_near),
+        for name, call in (("evaluate_at", evaluate), ("surfels_near", near_at),
                            ("accept_at", lambda *args: args[5])):  # where the search says that it met the surface
             if hasattr(module, name):
                 monkeypatch.setattr(module, name, call)
     top = cells[np.argmax(cells[:, 2])]
     start = Start((int(top[0]), int(top[1]), int(top[2])), (0.0, 0.0, 0.5), 5.0, 0.0, 0.0, 2.0, float("nan"), 1)
-    end = kernel(ready.sites, ready.plan.rule, ready.plan.how, ready.plan.bounds, (0.0, 0.0, -1.0), start,
-                 np.empty((0, r.LOG_WIDTH)), 0, *ready.scratch())
+    end = served(ready.sites, lambda own, pool: kernel(
+        own, ready.plan.rule, ready.plan.how, ready.plan.bounds, (0.0, 0.0, -1.0), start, np.empty((0, r.LOG_WIDTH)), 0,
+        pool.work, pool.fit))
     assert end.state == r.CONVERGED
     assert plan(scene, settings)["gradient of f"].runs == (r.WITH_GRADIENT in asked)
 
@@ -301,12 +298,13 @@ def test_a_miss_is_proven_where_that_is_planned(proof: bool, monkeypatch: pytest
     monkeypatch.setattr(probe, "evaluate_at", lambda _, *args: tangent.tangent_surfel(*args))
     for module in (safe, probe):
         if hasattr(module, "surfels_near"):
-            monkeypatch.setattr(module, "surfels_near", surfels_near)
+            monkeypatch.setattr(module, "surfels_near", near_at)
     counted(monkeypatch, calls, safe, "proven", lambda *args: args[-1])
     top = cells[np.argmax(cells[:, 2])]
     start = Start((int(top[0]), int(top[1]), int(top[2])), (0.0, 0.0, 2.0), 5.0, 0.0, 0.0, 1.0, float("nan"), 1)
-    end = kernel(ready.sites, ready.plan.rule, ready.plan.how, ready.plan.bounds, (0.0, 0.0, 1.0), start,
-                 np.empty((0, r.LOG_WIDTH)), 0, *ready.scratch())
+    end = served(ready.sites, lambda own, pool: kernel(
+        own, ready.plan.rule, ready.plan.how, ready.plan.bounds, (0.0, 0.0, 1.0), start, np.empty((0, r.LOG_WIDTH)), 0,
+        pool.work, pool.fit))
     assert end.state == r.BACKGROUND
     assert plan(scene, settings)["proof of misses"].runs == ("proven" in calls)
 

@@ -14,14 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
-from jaart.core.kernels.call import search_from
+from jaart.core.kernels.address import floats_at, load
+from jaart.core.kernels.blocks import FITTED, GATHERER, HEAP, KEPT, MORE, is_short, kept_in, publish, take_back
+from jaart.core.kernels.call import evaluate_at, gather_at, search_from
 from jaart.core.kernels.counts import forget_counts, write_counts
-from jaart.core.kernels.guess import STATE, is_near, meets, show_centre
+from jaart.core.kernels.guess import GUESS_WIDTH, STATE, is_near, meets, show_centre, write_guess
 from jaart.core.kernels.heap import pop, push
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.leaving import Leave, counting, leave
 from jaart.core.kernels.log import end_log
-from jaart.core.kernels.near import surfels_near
+from jaart.core.kernels.near import near_in, surfels_near
 from jaart.core.kernels.packet import is_bad
 from jaart.core.kernels.ray import added, no_hit, visiting, write_end
 from jaart.core.kernels.records import Array, Out, Plan, RayEnd, Sites, Start, Vector
@@ -33,7 +35,7 @@ from jaart.core.kernels.vectors import along, dot
 Ints = NDArray[np.int64]
 #: Promises closer to a hit than this, in h, are of the same sheet.
 _SAME_SHEET = 0.25
-#: RayEnd.missing: every ball needed is gathered, or the heap has no room.
+#: Nothing is left in the heap that counts, or it has no room.
 NOTHING, ROOM = -1, -2
 
 
@@ -48,20 +50,14 @@ _LEAF_ROOM = 64
 class Balls(NamedTuple):
     """A cloud as rays pierce it.
 
-    sites: the gathered balls, in the order they were asked for; slot: (N,) place of each ball in sites; ready: of
-    the balls gathered, slots from there on are not yet there; centres, radii: (N, 3), (N,); tree: over the balls;
-    guesses: (ready, GUESS_WIDTH) what is kept at their centres; stretches: 1 where a ball is searched from side to
-    side, 0 where a search starts from its promise; any_hit: 1 where the first found will do; blur: rounding of the
-    frame's origin.
+    sites: the balls; radii: (N,); tree: over the balls; stretches: 1 where a ball is searched from side to side, 0
+    where a search starts from its promise, which what is kept at its centre makes; any_hit: 1 where the first found
+    will do; blur: rounding of the frame's origin.
     """
 
     sites: Sites
-    slot: Ints
-    ready: int
-    centres: Array
     radii: Array
     tree: Tree
-    guesses: Array
     stretches: int
     any_hit: int
     blur: float
@@ -73,7 +69,7 @@ def chord(balls: Balls, ball: int, o: Vector, d: Vector) -> tuple[float, float, 
 
     γ = (ρ - distance of ray and centre)/ρ.
     """
-    c = (balls.centres[ball, 0] - o[0], balls.centres[ball, 1] - o[1], balls.centres[ball, 2] - o[2])
+    c = (balls.sites.centres[ball, 0] - o[0], balls.sites.centres[ball, 1] - o[1], balls.sites.centres[ball, 2] - o[2])
     foot, radius = dot(c, d), balls.radii[ball]
     aside = along(c, d, -foot)
     distance = sqrt(dot(aside, aside))
@@ -116,6 +112,35 @@ def next_item(balls: Balls, o: Vector, d: Vector, inverse: Vector, limit: float,
 
 
 @kernel(STRICT)
+def guess_at(sites: Sites, ball: int) -> int:
+    """Address of what is kept at the centre of a ball that was made ready."""
+    return kept_in(load(sites.slots, ball))
+
+
+@kernel(STRICT)
+def make_ready(sites: Sites, plan: Plan, ball: int, work: Array, fit: Array) -> bool:
+    """Gather a ball's surfels and keep the surface at its centre, where nobody did; whether there was room for it."""
+    pool, place = sites.pool, (ball, _ZERO, _ZERO)
+    if load(sites.slots, ball) != 0:
+        return True
+    address = gather_at(pool[GATHERER], pool, place)
+    if address == 0:
+        return False
+    near = near_in(pool, address)
+    if pool[MORE] > 0:
+        take_back(pool, address)
+        return False
+    if pool[KEPT] > 0:
+        taken = fit[r.EIGENVECTORS]  # what is kept for all rays is none's
+        v = evaluate_at(plan.how.evaluate, near, (0.0, 0.0, 0.0), plan.rule, r.QUICK, work, fit)
+        fit[r.EIGENVECTORS] = taken
+        write_guess(floats_at(kept_in(address), GUESS_WIDTH), v, fit)
+    if publish(sites.slots, ball, address, pool) == address and pool[KEPT] > 0:
+        pool[FITTED] += 1
+    return True
+
+
+@kernel(STRICT)
 def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, begin: Leave, number: int) -> Start:
     """Where the search of a ball begins: at its promise, NaN for none, or at its near side for a stretch.
 
@@ -123,33 +148,33 @@ def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, begin: L
     sheet is seen close ahead from there, its promise may lie a little behind.
     """
     foot, half, _ = chord(balls, ball, o, d)
-    slot: Any = balls.slot[ball]
-    c = (balls.centres[ball, 0], balls.centres[ball, 1], balls.centres[ball, 2])
+    c = (balls.sites.centres[ball, 0], balls.sites.centres[ball, 1], balls.sites.centres[ball, 2])
     base = along((o[0] - c[0], o[1] - c[1], o[2] - c[2]), d, foot)
     low, high = min(max(-half, begin.t - foot), half), half
-    s = low if balls.stretches == 1 else meets(balls.guesses[slot], base, d, low, high, plan.rule.h)
+    guess = floats_at(guess_at(balls.sites, ball), GUESS_WIDTH)
+    s = low if balls.stretches == 1 else meets(guess, base, d, low, high, plan.rule.h)
     if s != s and -half < low and 0.0 < begin.ahead < _SAME_SHEET * plan.rule.h and plan.how.kind != r.CENTRES:
         back = max(-half, low - _SAME_SHEET * plan.rule.h)
-        behind = meets(balls.guesses[slot], base, d, back, low, plan.rule.h)
+        behind = meets(guess, base, d, back, low, plan.rule.h)
         s = low if behind == behind else s
-    return Start((slot, _ZERO, _ZERO), base, foot, s, low, high, nan, number)
+    return Start((ball, _ZERO, _ZERO), base, foot, s, low, high, nan, number)
 
 
 @kernel(STRICT)
 def may_be_left(balls: Balls, ball: int, o: Vector, h: float) -> bool:
     """Whether the ray's origin, which a ball must hold, may be on the surface: what is kept of it is not far."""
-    x = (o[0] - balls.centres[ball, 0], o[1] - balls.centres[ball, 1], o[2] - balls.centres[ball, 2])
+    x = (o[0] - balls.sites.centres[ball, 0], o[1] - balls.sites.centres[ball, 1], o[2] - balls.sites.centres[ball, 2])
     if dot(x, x) > balls.radii[ball] * balls.radii[ball]:
         return False
-    return balls.stretches == 1 or is_near(balls.guesses[balls.slot[ball]], x, _BESIDE * h)
+    guess = floats_at(guess_at(balls.sites, ball), GUESS_WIDTH)
+    return balls.stretches == 1 or is_near(guess, x, _BESIDE * h)
 
 
 @kernel(STRICT)
 def leaving(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, work: Array, fit: Array) -> Leave:
     """How a ray that starts in a ball leaves its origin."""
-    slot: Any = balls.slot[ball]
-    x = (o[0] - balls.centres[ball, 0], o[1] - balls.centres[ball, 1], o[2] - balls.centres[ball, 2])
-    return leave(surfels_near(balls.sites, (slot, _ZERO, _ZERO)), x, o, d, plan, balls.blur, work, fit)
+    x = (o[0] - balls.sites.centres[ball, 0], o[1] - balls.sites.centres[ball, 1], o[2] - balls.sites.centres[ball, 2])
+    return leave(surfels_near(balls.sites, (ball, _ZERO, _ZERO)), x, o, d, plan, balls.blur, work, fit)
 
 
 @kernel(STRICT)
@@ -164,14 +189,14 @@ def in_units(tree: Tree, o: Vector, h: float) -> Vector:
 @kernel(STRICT)
 def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, work: Array, fit: Array, keys: Array,
                    items: Ints) -> RayEnd:
-    """The first hit of a ray, or how its last start ended; `missing` names a ball to gather first.
+    """The first hit of a ray, or how its last start ended; it ends at once where the pool is short of room.
 
     o, d: origin and unit direction in the cloud's local frame; keys, items: room for the heap.
     """
     if is_bad(in_units(balls.tree, o, plan.rule.h), d):
         return no_hit(r.BAD_RAY)
     inverse = (1.0 / d[0], 1.0 / d[1], 1.0 / d[2])
-    count = balls.centres.shape[0]
+    count = balls.sites.centres.shape[0]
     end, best, visited, number = no_hit(r.BACKGROUND), no_hit(r.BACKGROUND), 0, 0
     found, limit, first, slack = False, inf, inf, _SAME_SHEET * plan.rule.h
     begin = Leave(0.0, _NOT_ASKED, nan)
@@ -182,21 +207,25 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
         if item == NOTHING:
             break
         ball = item if item < count else item - count
-        if item == ROOM or balls.slot[ball] < 0 or balls.slot[ball] >= balls.ready:
-            return RayEnd(r.BACKGROUND, nan, end.point, end.n, nan, nan, 0, 0, 0, 0, 0, nan, 0, ball)
+        if item == ROOM:
+            balls.sites.pool[HEAP] = 1
+            return end
+        if not make_ready(balls.sites, plan, ball, work, fit):
+            return end
+        guess = floats_at(guess_at(balls.sites, ball), GUESS_WIDTH)
         if begin.used < 0 and begin.t == 0.0 and may_be_left(balls, ball, o, plan.rule.h):
             begin = leaving(balls, plan, ball, o, d, work, fit)
             end = counting(end, begin)
         start = start_in(balls, plan, ball, o, d, begin, number)
         visited += 1 if item < count else 0
         if balls.stretches == 0 and not start.t + start.s >= 0.0:
-            end = unpromising(end, int(balls.guesses[balls.slot[ball], STATE]))
+            end = unpromising(end, int(guess[STATE]))
             continue
         if item < count and balls.stretches == 0 and balls.any_hit == 0:
             size = push(keys, items, size, start.t + start.s, count + ball)
             continue
         if plan.how.kind == r.CENTRES:
-            show_centre(balls.guesses[balls.slot[ball]], fit)
+            show_centre(guess, fit)
         one = search_from(plan.search, balls.sites, plan.rule, plan.how, plan.bounds, d, start, rows, end.rows, work,
                           fit)
         number += 1
@@ -230,27 +259,25 @@ def finished(best: RayEnd, last: RayEnd, visited: int) -> RayEnd:
 
 @kernel(STRICT, entry=True)
 def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array, pixels: Ints, out: Out, rows: Array,
-                    missing: Ints, work: Array, fit: Array, keys: Array, items: Ints) -> int:
-    """Trace some of the rays and write each that ended into its row of the columns; returns the rows of the log.
+                    work: Array, fit: Array, keys: Array, items: Ints) -> tuple[int, int]:
+    """Trace some of the rays and write each into its row of the columns; returns how many of them, before one for which
+    the pool was short, and the rows of the log.
 
-    origins, directions: (R, 3) in the local frame; pixels: rows to trace; missing: for each of them NOTHING, the ball
-    to gather, or ROOM; the others as of `trace_ball_ray`.
+    origins, directions: (R, 3) in the local frame; pixels: rows to trace; the others as of `trace_ball_ray`.
     """
-    sites, log = unowned_sites(balls.sites), unowned(rows)
-    tree = Tree(unowned(balls.tree.low), unowned(balls.tree.high), unowned(balls.tree.first),
-                unowned(balls.tree.size), unowned(balls.tree.order))
-    balls = Balls(sites, unowned(balls.slot), balls.ready, unowned(balls.centres), unowned(balls.radii), tree,
-                  unowned(balls.guesses), balls.stretches, balls.any_hit, balls.blur)
+    log, tree = unowned(rows), balls.tree
+    tree = Tree(unowned(tree.low), unowned(tree.high), unowned(tree.first), unowned(tree.size), unowned(tree.order))
+    balls = Balls(unowned_sites(balls.sites), unowned(balls.radii), tree, balls.stretches, balls.any_hit, balls.blur)
     scratch, fitted, waiting, numbers, written = unowned(work), unowned(fit), unowned(keys), unowned(items), 0
     for i in range(pixels.shape[0]):
         to = pixels[i]
         o = (origins[to, 0], origins[to, 1], origins[to, 2])
         d = (directions[to, 0], directions[to, 1], directions[to, 2])
         end = trace_ball_ray(balls, plan, o, d, log, scratch, fitted, waiting, numbers)
-        missing[i] = end.missing
-        if end.missing == NOTHING:
-            write_end(out, to, end)
-            write_counts(out, to, fitted)
-            written = end.rows
-        forget_counts(fitted)
-    return written
+        if is_short(balls.sites.pool):
+            forget_counts(fitted)
+            return i, 0
+        write_end(out, to, end)
+        write_counts(out, to, fitted)
+        written = end.rows
+    return pixels.shape[0], written

@@ -19,13 +19,13 @@ _VECTOR = types.UniTuple(types.float64, 3)
 _CELL = types.UniTuple(types.int64, 3)
 _FLOATS = types.Array(types.float64, 1, "C")
 _ROWS = types.Array(types.float64, 2, "C")
-_NEAR = types.NamedTuple((_FLOATS, types.uint64, types.uint64), r.Near)
+_NEAR = types.NamedTuple((_FLOATS, types.uint64, types.uint64, types.uint64), r.Near)
 _RULE = types.NamedTuple((types.int64, types.int64, types.float64, types.float64, types.int64, types.int64,
                           types.int64, types.float64, types.float64), r.Rule)
 _VALUE = types.NamedTuple((types.int64, types.float64, _VECTOR, _VECTOR, types.float64, types.float64, _VECTOR,
                            types.int64), r.Value)
-_SITES = types.NamedTuple((_CELL, _ROWS, types.Array(types.int64, 1, "C"), types.Array(types.int32, 1, "C"),
-                           _FLOATS), r.Sites)
+_NUMBERS = types.Array(types.int64, 1, "C")
+_SITES = types.NamedTuple((_CELL, _ROWS, _NUMBERS, _NUMBERS), r.Sites)
 _SEARCH = types.NamedTuple((types.int64,) * 5 + (types.float64, types.int64, types.int64, types.float64, types.int64,
                                                  types.float64, types.int64, types.int64, types.float64,
                                                  types.int64), r.Search)
@@ -45,7 +45,8 @@ SEARCH = _END(_SITES, _RULE, _SEARCH, _BOUNDS, _VECTOR, _START, _ROWS, types.int
 APPROACH = types.float64(_VALUE, _VECTOR, types.float64, types.float64, _RULE, _FLOATS)
 #: accept(sites, rule, how, bounds, met, spent, work, fit) -> End.
 ACCEPT = _END(_SITES, _RULE, _SEARCH, _BOUNDS, _MET, _SPENT, _FLOATS, _FLOATS)
-
+#: gather(pool, place) -> address of its block, 0 where there is no room.
+GATHER = types.int64(_NUMBERS, _CELL)
 
 
 def _caller(signature: Any) -> Any:
@@ -88,3 +89,9 @@ def accept_at(typing_context: Any, address: Any, sites: Any, rule: Any, how: Any
               work: Any, fit: Any) -> Any:
     """Let what stands at an address say what becomes of a hit."""
     return ACCEPT.return_type(types.int64, *ACCEPT.args), _caller(ACCEPT)
+
+
+@intrinsic
+def gather_at(typing_context: Any, address: Any, pool: Any, place: Any) -> Any:
+    """Gather what is near a place, by what stands at an address."""
+    return GATHER.return_type(types.int64, *GATHER.args), _caller(GATHER)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
+from jaart.core.kernels.blocks import is_short
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import normal, point, surfels_near
 from jaart.core.kernels.packet import is_bad
@@ -167,8 +168,9 @@ def cylinder_ray(cells: Cells, radius: float, o: Vector, d: Vector, rows: Array)
 
 @kernel(STRICT, entry=True)
 def cylinder_rays(cells: Cells, radius: float, origins: Array, directions: Array, pixels: NDArray[np.int64], out: Out,
-                  rows: Array) -> int:
-    """Trace some of the rays and write each into its row of the columns; returns the rows of the log it wrote.
+                  rows: Array) -> tuple[int, int]:
+    """Trace some of the rays and write each into its row of the columns; returns how many of them, before one for which
+    the pool was short, and the rows of the log it wrote.
 
     origins, directions: (R, 3) in cells, directions of unit length; rows: the log of a single ray, (0, LOG_WIDTH) for
     none.
@@ -179,6 +181,8 @@ def cylinder_rays(cells: Cells, radius: float, origins: Array, directions: Array
         o = (origins[to, 0], origins[to, 1], origins[to, 2])
         d = (directions[to, 0], directions[to, 1], directions[to, 2])
         end = cylinder_ray(cells, radius, o, d, log_rows)
+        if is_short(cells.sites.pool):
+            return i, 0
         write_end(out, to, end)
         written = end.rows
-    return written
+    return pixels.shape[0], written

@@ -8,15 +8,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
+from jaart.core.kernels.blocks import PARTS
 from jaart.core.kernels.call import evaluate_at
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.judge import angle_energy
 from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.place import centre_of
-from jaart.core.kernels.records import Array, Cell, Plan, Rule, Sites, Vector
-from jaart.core.kernels.sums import mahalanobis_sums
+from jaart.core.kernels.records import Array, Cell, Near, Plan, Rule, Sites, Vector
+from jaart.core.kernels.sums import covariance_sums, mahalanobis_sums
 from jaart.core.kernels.vectors import along, dot, length
 from jaart.core.kernels.weigh import weigh
+
+
+@kernel(STRICT)
+def mahalanobis(sites: Sites, near: Near, x: Vector, c: float, work: Array) -> float:
+    """Σθ·d_M; without normals nothing is across them, and all of it counts c times."""
+    if sites.pool[PARTS] == 6:
+        return mahalanobis_sums(near, x, c, work)
+    xx, _, _, yy, _, zz = covariance_sums(near, x, work)
+    return c * (xx + yy + zz)
 
 
 @kernel(STRICT, entry=True)
@@ -41,7 +51,7 @@ def sample(sites: Sites, plan: Plan, o: Vector, d: Vector, ts: Array, places: ND
             energies[0, i], energies[3, i] = v.f / dot(v.n, d), angle_energy(v.n, v.off)
         s, _ = weigh(near, x, plan.rule, work)
         energies[1, i] = length(v.off)
-        energies[2, i] = mahalanobis_sums(near, x, plan.rule.c, work) / s
+        energies[2, i] = mahalanobis(sites, near, x, plan.rule.c, work) / s
 
 
 @kernel(STRICT, entry=True)

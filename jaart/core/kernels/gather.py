@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 from math import floor
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core.kernels.address import floats_at, ids_at, points_at, wholes_at
+from jaart.core.kernels.blocks import AT, PARTS, SOURCE, columns_in, fill_up, free_ids, ids_in, lay, wide_of
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.records import Array, Cell, Vector
 
 Ints = NDArray[np.int64]
+#: What a pool knows: how many points; addresses of the grid's corner with its edge, its shape, keys, points, normals
+#: and ids, of the balls' centres and of how far around each a point counts.
+(COUNT, LOW, SHAPE, KEYS, POINTS, NORMALS, IDS, CENTRES, REACH) = range(SOURCE, SOURCE + 9)
 
 
 class Grid(NamedTuple):
     """Points sorted by the cells of a grid.
 
-    low: corner (3,); edge: of a cell; shape: (3,) cells along each axis; keys: (N,) number of each point's cell, C
-    order, rising; points, normals: (N, 3) in that order; ids: (N,) their numbers in the cloud.
+    low: corner (3,) and what follows; edge: of a cell; shape: (3,) cells along each axis; keys: (N,) number of each
+    point's cell, C order, rising; points, normals: (N, 3) in that order, or no normals; ids: (N,) their numbers in the
+    cloud.
     """
 
     low: Array
@@ -27,7 +33,7 @@ class Grid(NamedTuple):
     keys: Ints
     points: Array
     normals: Array
-    ids: Ints
+    ids: NDArray[np.int32]
 
 
 @kernel(STRICT)
@@ -74,30 +80,50 @@ def run(grid: Grid, low: Cell, high: Cell, rows: int, row: int) -> tuple[int, in
             first_at_least(grid.keys, (to_i * grid.shape[1] + to_j) * grid.shape[2] + high[2] + 1))
 
 
-@kernel(STRICT, entry=True)
-def gather(grid: Grid, centres: Array, radii: Array, first: Ints, ids: NDArray[np.int32], columns: Array,
-           write: int) -> None:
-    """Count the points within each ball, or copy them into columns.
+@kernel(STRICT)
+def grid_of(pool: Ints) -> Grid:
+    """The grid that a pool gathers from."""
+    count, low = pool[COUNT], floats_at(pool[LOW], 4)
+    return Grid(low, low[3], wholes_at(pool[SHAPE], 3), wholes_at(pool[KEYS], count), points_at(pool[POINTS], count),
+                points_at(pool[NORMALS], count), ids_at(pool[IDS], count))
 
-    centres: (B, 3); radii: (B,). Counting (write = 0) puts the number of ball b's points into first[b + 1];
-    writing takes first as where each one's begin in ids, and 6 times that in columns: x, y, z relative to the
-    ball's centre and the normals' parts, each contiguous (records.Sites).
+
+@kernel(STRICT)
+def find(grid: Grid, centre: Vector, radius: float, ids: Any) -> int:
+    """Write down where in the grid the points within a ball stand, as many as there is room for; returns how many."""
+    found, (low, high, rows) = 0, cells_of(grid, centre, radius)
+    for row in range(rows):
+        begin, end = run(grid, low, high, rows, row)
+        for at in range(begin, end):
+            x, y, z = grid.points[at, 0] - centre[0], grid.points[at, 1] - centre[1], grid.points[at, 2] - centre[2]
+            if x * x + y * y + z * z <= radius * radius:
+                if found < ids.shape[0]:
+                    ids[found] = at
+                found += 1
+    return found
+
+
+@kernel(STRICT)
+def gather_ball(pool: Ints, cell: Cell) -> int:
+    """Gather the points within reach of a ball's centre; returns the block's address, 0 where there is no room.
+
+    cell: the ball's number, then 0, 0.
     """
-    for b in range(centres.shape[0]):
-        x, y, z, square = centres[b, 0], centres[b, 1], centres[b, 2], radii[b] * radii[b]
-        low, high, rows = cells_of(grid, (x, y, z), radii[b])
-        found, size = 0, first[b + 1] - first[b] if write == 1 else 0
-        for row in range(rows):
-            begin, end = run(grid, low, high, rows, row)
-            for at in range(begin, end):
-                px, py, pz = grid.points[at, 0] - x, grid.points[at, 1] - y, grid.points[at, 2] - z
-                if px * px + py * py + pz * pz <= square:
-                    if write == 1:
-                        to = 6 * first[b] + found
-                        ids[first[b] + found] = grid.ids[at]
-                        columns[to], columns[to + size], columns[to + 2 * size] = px, py, pz
-                        for axis in range(3):
-                            columns[to + (3 + axis) * size] = grid.normals[at, axis]
-                    found += 1
-        if write == 0:
-            first[b + 1] = found
+    grid, ball = grid_of(pool), cell[0]
+    at, reach = points_at(pool[CENTRES], ball + 1), floats_at(pool[REACH], ball + 1)
+    centre = (at[ball, 0], at[ball, 1], at[ball, 2])
+    size = find(grid, centre, reach[ball], ids_at(ids_in(pool, pool[AT]), free_ids(pool)))
+    address = lay(pool, size)
+    if address == 0:
+        return 0
+    ids, parts, wide = ids_at(ids_in(pool, address), size), pool[PARTS], wide_of(size)
+    columns = floats_at(columns_in(pool, address, size), parts * wide)
+    fill_up(columns, parts, size)
+    for a in range(size):
+        one = ids[a]
+        for axis in range(3):
+            columns[axis * wide + a] = grid.points[one, axis] - centre[axis]
+            if parts == 6:
+                columns[(3 + axis) * wide + a] = grid.normals[one, axis]
+        ids[a] = grid.ids[one]
+    return address

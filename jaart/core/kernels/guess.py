@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 
 from jaart.core.kernels import records as r
-from jaart.core.kernels.call import evaluate_at
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.polynomial import line_polynomial
-from jaart.core.kernels.records import COEFFICIENTS, FIT_SIZE, Array, Plan, Sites, Value, Vector
+from jaart.core.kernels.records import COEFFICIENTS, FIT_SIZE, Array, Value, Vector
 from jaart.core.kernels.roots import first_root_above
 from jaart.core.kernels.vectors import dot, frame
 
@@ -40,15 +38,6 @@ def read_guess(row: Array, fit: Array) -> Value:
         fit[i] = row[FIT + i]
     return Value(int(row[STATE]), row[HEIGHT], (row[N_X], row[N_Y], row[N_Z]), (row[OFF_X], row[OFF_Y], row[OFF_Z]),
                  row[WEIGHT], row[SHIFT], (nan, nan, nan), int(row[DEGREE]))
-
-
-@kernel(STRICT, entry=True)
-def fit_centres(sites: Sites, plan: Plan, begin: int, guesses: Array, work: Array, fit: Array) -> None:
-    """Keep the surface at the centres of the balls begin, begin + 1, ... in guesses (B, GUESS_WIDTH)."""
-    for ball in range(begin, begin + guesses.shape[0]):
-        near = surfels_near(sites, (ball, _ZERO, _ZERO))
-        v = evaluate_at(plan.how.evaluate, near, (0.0, 0.0, 0.0), plan.rule, r.QUICK, work, fit)
-        write_guess(guesses[ball - begin], v, fit)
 
 
 @kernel(STRICT)

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
+from jaart.core.kernels.blocks import is_short
 from jaart.core.kernels.call import search_from
-from jaart.core.kernels.counts import write_counts
+from jaart.core.kernels.counts import forget_counts, write_counts
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.leaving import FARTHEST, Leave, counting, least_of_energies, leave
 from jaart.core.kernels.log import end_log
@@ -195,8 +196,9 @@ def end_in(cells: Cells, plan: Plan, p: Array, lane: Unsigned, rows: Array, work
 
 @kernel(STRICT, entry=True)
 def trace_rays(cells: Cells, plan: Plan, origins: Array, directions: Array, begins: Array, pixels: NDArray[np.int64],
-               out: Out, rows: Array, packet: Array, work: Array, fit: Array) -> int:
-    """Trace some of the rays and write each into its row of the columns; returns the rows of the log it wrote.
+               out: Out, rows: Array, packet: Array, work: Array, fit: Array) -> tuple[int, int]:
+    """Trace some of the rays and write each into its row of the columns; returns how many of them, before one for which
+    the pool was short, and the rows of the log it wrote.
 
     origins, directions: (R, 3) in cells, directions of unit length; begins: (R,) t before which a ray meets nothing, or
     (0,); pixels: rows to trace; rows: the log of a single ray, (0, LOG_WIDTH) for none; packet, work, fit: scratch of
@@ -213,7 +215,10 @@ def trace_rays(cells: Cells, plan: Plan, origins: Array, directions: Array, begi
         walk_together(p, cells.empty, free_of(cells), cells.uniform > 0.0, count)
         for lane in range(count):
             end = end_in(cells, plan, p, lane, log, scratch, fitted)
+            if is_short(cells.sites.pool):
+                forget_counts(fitted)
+                return first + int(lane), 0
             write_end(out, pixels[first + int(lane)], end)
             write_counts(out, pixels[first + int(lane)], fitted)
             written = end.rows
-    return written
+    return pixels.shape[0], written

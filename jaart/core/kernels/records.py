@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
 Vector = tuple[float, float, float]
 Cell = tuple[int, int, int]
 #: np.uint64 to the compiler, which unlike numpy counts a loop up to one in its own type.
@@ -17,28 +18,29 @@ Unsigned: TypeAlias = Any
 class Sites(NamedTuple):
     """Places with the surfels near each: the cells of a lattice, or balls of a cloud.
 
-    shape: cells along each axis, (0, 0, 0) for balls; centres: (B, 3) of balls, (0, 3) for cells;
-    first: (number of places + 1,) where each one's surfels begin in ids, cells in C order; ids: (M,) the
-    surfels near each place; columns: (6·M,) for each place with N of them N times x, then y, z relative to its
-    centre and the three parts of the normal, each contiguous so that sums vectorise.
+    shape: cells along each axis, (0, 0, 0) for balls; centres: (B, 3) of balls, (0, 3) for cells; slots: addresses of
+    the places' blocks (see blocks.py), 0 where nobody asked for one yet: of each ball, or of the cells of each brick of
+    4×4×4, C order, behind the numbers that say where in slots a brick begins, 0 for one that no surfel is near; pool:
+    where this thread's next block goes and what it is gathered from.
     """
 
     shape: Cell
     centres: Array
-    first: NDArray[np.int64]
-    ids: NDArray[np.int32]
-    columns: Array
+    slots: Numbers
+    pool: Numbers
 
 
 class Near(NamedTuple):
     """The surfels near one place: as many as size in the columns from base on.
 
-    The numbers are unsigned: a signed index would be checked for its sign, and the sums stay scalar.
+    wide: how long each column is; what follows the surfels in it counts nothing in a Gaussian's sums. The numbers are
+    unsigned: a signed index would be checked for its sign, and the sums stay scalar.
     """
 
     columns: Array
     base: Unsigned
     size: Unsigned
+    wide: Unsigned
 
 
 class Rule(NamedTuple):

@@ -18,10 +18,13 @@ Symmetric = tuple[float, float, float, float, float, float]
 
 @kernel()
 def gaussian_sums(near: Near, x: Vector, h: float) -> tuple[float, Vector, Vector]:
-    """Σθ, Σθ(p - x) and Σθn of all surfels with the Gaussian weight, in one pass that writes no weights down."""
+    """Σθ, Σθ(p - x) and Σθn of all surfels with the Gaussian weight, in one pass that writes no weights down.
+
+    It runs over whole vectors: what a place's columns are filled up with adds nothing.
+    """
     per_h = 1.0 / h
     s = sx = sy = sz = mx = my = mz = 0.0
-    for i in range(near.size):
+    for i in range(near.wide):
         p, n = point(near, i), normal(near, i)
         qx, qy, qz = p[0] - x[0], p[1] - x[1], p[2] - x[2]
         w = exp_minus(qx * per_h * (qx * per_h) + qy * per_h * (qy * per_h) + qz * per_h * (qz * per_h))

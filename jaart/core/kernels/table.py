@@ -1,4 +1,4 @@
-"""The neighbour table of a lattice (`cell_ball`) and its field of empty space."""
+"""How far from surfels a lattice's cells are, and how far surfels reach."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.records import Array, Cell
+from jaart.core.kernels.records import Array
 
 Ints = NDArray[np.int32]
 Distances = NDArray[np.uint8]
@@ -24,33 +24,28 @@ def near_box(cell: int, offset: float, radius: float, n: int) -> tuple[int, int]
 
 
 @kernel(STRICT, entry=True)
-def scan_near(cells: Ints, offsets: Array, normals: Array, begin: int, end: int, radius: float, shape: Cell,
-              first: NDArray[np.int64], counted: NDArray[np.int64], ids: Ints, columns: Array) -> None:
-    """Count the surfels begin … end near each cell and, when there is room for them, write them down.
+def widest(cells: Ints, offsets: Array, radius: float, empty: NDArray[np.uint8], most: int) -> int:
+    """The most cells that lie between one with a surfel within a radius of its centre and the nearest with one in it.
 
-    cells, offsets, normals: (N, 3) cell of each surfel, its position relative to that cell's centre and its
-    normal; counted: surfels found near each cell so far; first, ids, columns: as in records.Cells, ids and
-    columns are written in place or have length 0. A cell's surfels keep their own order.
+    cells, offsets: (N, 3) cell of each surfel, its position relative to that cell's centre; empty: of the lattice, as
+    `fill_empty` leaves it; most: what no surfel can exceed, where the search ends.
     """
-    for s in range(begin, end):
-        i0, i1 = near_box(cells[s, 0], offsets[s, 0], radius, shape[0])
-        j0, j1 = near_box(cells[s, 1], offsets[s, 1], radius, shape[1])
-        k0, k1 = near_box(cells[s, 2], offsets[s, 2], radius, shape[2])
+    found = 0
+    for s in range(cells.shape[0]):
+        i0, i1 = near_box(cells[s, 0], offsets[s, 0], radius, empty.shape[0])
+        j0, j1 = near_box(cells[s, 1], offsets[s, 1], radius, empty.shape[1])
+        k0, k1 = near_box(cells[s, 2], offsets[s, 2], radius, empty.shape[2])
         for i in range(i0, i1):
             x = (cells[s, 0] - i) + offsets[s, 0]
             for j in range(j0, j1):
                 y = (cells[s, 1] - j) + offsets[s, 1]
                 for k in range(k0, k1):
                     z = (cells[s, 2] - k) + offsets[s, 2]
-                    if x * x + y * y + z * z <= radius * radius:
-                        c = (i * shape[1] + j) * shape[2] + k
-                        if ids.shape[0] > 0:
-                            n, at = first[c + 1] - first[c], 6 * first[c] + counted[c]
-                            ids[first[c] + counted[c]] = s
-                            columns[at], columns[at + n], columns[at + 2 * n] = x, y, z
-                            for axis in range(3):
-                                columns[at + (3 + axis) * n] = normals[s, axis]
-                        counted[c] += 1
+                    if int(empty[i, j, k]) > found and x * x + y * y + z * z <= radius * radius:
+                        found = int(empty[i, j, k])
+        if found >= most:
+            break
+    return found
 
 
 #: The largest distance there is.

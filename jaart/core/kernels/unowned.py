@@ -31,8 +31,7 @@ def unowned(typing_context: Any, array: Any) -> Any:
 @kernel(STRICT)
 def unowned_sites(sites: Sites) -> Sites:
     """Places, their arrays without owners."""
-    return Sites(sites.shape, unowned(sites.centres), unowned(sites.first), unowned(sites.ids),
-                 unowned(sites.columns))
+    return Sites(sites.shape, unowned(sites.centres), unowned(sites.slots), unowned(sites.pool))
 
 
 @kernel(STRICT)

@@ -1,0 +1,142 @@
+"""What rays gather: only near places they come to, the same in any room, with any number of threads at once."""
+
+from __future__ import annotations
+
+import itertools
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from jaart.core import balls, memory, places, prepare
+from jaart.core.errors import SettingsError
+from jaart.core.io import load
+from jaart.core.kernels.blocks import NOWHERE
+from jaart.core.kernels.guess import GUESS_WIDTH
+from jaart.core.kernels.records import Sites
+from jaart.core.kernels.sums import gaussian_sums
+from jaart.core.places import Places, listed, listed_near, places_of, served
+from jaart.core.records import Hits
+from jaart.core.render import render
+from jaart.core.scene import Scene
+from jaart.core.settings import Settings, preset
+from tests.core.cloud_scenes import fresh
+from tests.core.kernel_calls import asked_cells, near_at, near_of
+
+SIZE = (40, 40)
+SETTINGS = {
+    "best": preset("best"), "thesis": preset("thesis"), "plane": Settings(), "safe": Settings(search="safe"),
+    "cylinder": Settings(method="cylinder", h=0.6), "march": Settings(search="march"),
+    "polynomial": Settings(method="polynomial", search="secant"),
+}
+CASES = ["lattice best", "lattice thesis", "cloud best", "cloud plane"]
+MORE = ["noise safe", "noise cylinder", "lattice march", "noise polynomial", "cloud safe", "cloud march",
+        "cloud polynomial"]
+
+
+def case(name: str) -> tuple[Scene, Settings]:
+    """A scene of its own, that nothing was traced in."""
+    kind, settings = name.split()
+    return {"lattice": lambda: load("standard"), "noise": noise,
+            "cloud": lambda: fresh("bumpy", 2000)}[kind](), SETTINGS[settings]
+
+
+def noise() -> Scene:
+    """A lattice whose cells are no cubes, so that surfels leave the order of their cells."""
+    levels = np.random.default_rng(2).uniform(0.05, 0.95, (9, 7, 11))
+    return Scene("noise", levels=levels, spacing=(1.0, 0.7, 0.4))
+
+
+def sites_of(scene: Scene, settings: Settings) -> Sites:
+    return prepare.prepared(scene, settings).tracer.sites
+
+
+def picture(name: str, threads: int = 1) -> tuple[list[bytes], Places]:
+    """The bits of a picture and what was kept for it."""
+    scene, settings = case(name)
+    return bits(render(scene, settings, size=SIZE, threads=threads)), places_of(sites_of(scene, settings))
+
+
+def bits(hits: Hits) -> list[bytes]:
+    assert hits.hit.any()
+    return [getattr(hits, column).tobytes() for column in ("t", "point", "normal", "energy", "off_centre", "iterations",
+                                                           "evaluations", "neighbours", "cells", "status")]
+
+
+@pytest.mark.parametrize(("name", "threads"), [*itertools.product(CASES, [1, 3]), *((name, 2) for name in MORE)])
+def test_a_picture_is_the_same_in_a_chunk_for_each_block(name: str, threads: int,
+                                                         monkeypatch: pytest.MonkeyPatch) -> None:
+    plain, roomy = picture(name)
+    monkeypatch.setattr(places, "CHUNK", 8)
+    monkeypatch.setattr(places, "SURFELS", 1)
+    monkeypatch.setattr(balls, "HEAP", 70)
+    tight, crowded = picture(name, threads)
+    assert tight == plain
+    assert roomy.kept.chunks < 10 and crowded.kept.chunks > 100
+    assert crowded.kept.gathered == roomy.kept.gathered and crowded.kept.fits == roomy.kept.fits
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_two_pictures_at_once_gather_what_one_does(name: str) -> None:
+    alone, once = picture(name)
+    scene, settings = case(name)
+    sites_of(scene, settings)
+    with ThreadPoolExecutor(2) as pool:
+        both = list(pool.map(lambda _: bits(render(scene, settings, size=SIZE, threads=2)), range(2)))
+    kept = places_of(sites_of(scene, settings)).kept
+    assert both == [alone, alone]
+    assert (kept.gathered, kept.fits, kept.block_bytes) == (once.kept.gathered, once.kept.fits, once.kept.block_bytes)
+
+
+def test_a_ray_gathers_only_cells_that_it_crosses() -> None:
+    scene, settings = case("lattice best")
+    nothing = render(scene, settings, rays=(np.array([[-9.0, -9.0, 99.0]]), np.array([[0.0, 0.0, 1.0]])))
+    sites = sites_of(scene, settings)
+    assert not nothing.hit.any() and places_of(sites).kept[:4] == (0, 0, 0, 0) and not len(asked_cells(sites))
+    x, y = (0.52 * n + 0.1 for n in sites.shape[:2])
+    hit = render(scene, settings, rays=(np.array([[x, y, 99.0]]), np.array([[0.0, 0.0, -1.0]])))
+    asked = asked_cells(sites)
+    assert hit.hit.all() and 0 < places_of(sites).kept.gathered == len(asked) < sites.shape[2] / 2
+    assert (asked[:, :2] == [int(x), int(y)]).all()
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_what_is_kept_is_counted(name: str) -> None:
+    scene, settings = case(name)
+    render(scene, settings, size=SIZE)
+    sites = sites_of(scene, settings)
+    kept = places_of(sites).kept
+    cloud = scene.kind == "cloud"
+    assert kept.gathered == (np.count_nonzero(sites.slots) if cloud else len(asked_cells(sites))) > 100
+    assert kept.fits == (kept.gathered if cloud else 0)
+    asked = np.flatnonzero(sites.slots)[:, None] * [1, 0, 0] if cloud else asked_cells(sites)
+    sizes = np.diff(listed_near(sites, asked)[0])
+    words = 1 + GUESS_WIDTH * (kept.fits > 0) + (sizes + 1) // 2 + 6 * (-(-sizes // 8) * 8)
+    assert kept.block_bytes == 8 * words[(sizes > 0) | cloud].sum()
+    again = render(scene, settings, size=SIZE)
+    assert again.hit.any() and places_of(sites).kept == kept
+
+
+@pytest.mark.parametrize("count", [0, 1, 7, 8, 9, 16, 17])
+def test_columns_are_filled_up_with_surfels_that_count_nothing(count: int) -> None:
+    made = np.random.default_rng(count).normal(size=(6, count))
+    sites = listed((0, 0, 0), np.zeros((1, 3)), np.array([0, count]), np.arange(count, dtype=np.int32), made.ravel())
+    near = served(sites, lambda own, pool: near_at(own, (0, 0, 0)))
+    columns = near.columns.reshape(6, -1)
+    assert near.size == count and near.wide == columns.shape[1] == -(-count // 8) * 8
+    assert np.array_equal(columns[:, :count], made)
+    assert (columns[:3, count:] == NOWHERE).all() and (columns[3:, count:] == 0.0).all()
+    assert np.array_equal(listed_near(sites, np.zeros((1, 3), np.int64))[2], made.ravel())
+    for h in (0.3, 1.0, 1e9):
+        full, bare = (gaussian_sums(one, (0.1, -0.2, 0.3), h) for one in (near, near_of(made[:3].T, made[3:].T)))
+        flat = [np.concatenate(([s], q, m)) for s, q, m in (full, bare)]
+        assert flat[0] == pytest.approx(flat[1], rel=1e-13, abs=1e-200 if count == 0 else 1e-13 * abs(made).max())
+
+
+@pytest.mark.parametrize("name", ["lattice best", "cloud best"])
+def test_rays_that_ask_for_more_than_there_is_are_told(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, settings = case(name)
+    sites_of(scene, settings)
+    monkeypatch.setattr(memory, "limit", lambda: 300 << 10)
+    with pytest.raises(SettingsError, match=r"needs 1.* MiB of memory, more than the"):
+        render(scene, settings, size=SIZE)
