@@ -1,8 +1,8 @@
 """What `tolerance = auto` saves, and that nothing of it can be seen: against the same picture traced to 1e-9.
 
-`hits` are those of auto less those at 1e-9: a few rays differ, mostly on lattices. f jumps there where lists of surfels
-end (benchmarks/jumps.py); whether that is why is not measured. `off` is how far the surface is from the true one, median
-of the hits: the model's error, which visible.ERROR and FITTED_ERROR give from below.
+`hits` are those of auto less those at 1e-9: a few rays differ, mostly on lattices. f jumps there where lists of
+surfels end (benchmarks/jumps.py); whether that is why is not measured. `off` is how far the surface is from the true
+one, median of the hits: the model's error, which visible.ERROR and FITTED_ERROR give from below.
 """
 
 from __future__ import annotations
