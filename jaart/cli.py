@@ -15,6 +15,7 @@ from jaart import cli_files as files
 from jaart import cli_isosurface as meshes
 from jaart import cli_plan as plans
 from jaart import cli_progress as bars
+from jaart import cli_rays as pictures
 from jaart import cli_report as report
 from jaart import cli_study as studies
 from jaart.cli_interrupt import beside
@@ -140,49 +141,27 @@ def settings(name: Annotated[str | None, typer.Argument(metavar="NAME", help=(
 def render(
         scene: SceneName, size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None,
         preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None, frame: Frame = None,
-        map_: Annotated[str, typer.Option("--map", metavar="NAME", help=(
-            "What colours mean: shaded, iterations, evaluations, off_centre, sampling, lowered, depth, status, "
-            "distance_error, normal_error."))] = "shaded",
-        rays: Annotated[Path | None, typer.Option(metavar="FILE", help=(
-            "Trace the origins and directions (R, 3) of this .npz instead of a camera's; needs --hits."))] = None,
-        threads: Threads = None,
-        output: OutputFile = None,
-        hits: Annotated[Path | None, typer.Option(metavar="FILE", help="Every ray's hit as arrays, .npz.")] = None,
-        ) -> None:
+        map_: pictures.MapName = "shaded", rays: pictures.RaysFile = None, threads: Threads = None,
+        output: OutputFile = None, hits: pictures.HitsFile = None) -> None:
     """Render a picture, or trace rays.
 
     To files; without --output and --hits to SCENE.png in this folder.
     """
     if rays is not None:
-        typed.check_rays_alone(camera, output, hits, map_)
-        if size != DEFAULT_SIZE:
-            print("jaart: note: --size has no meaning with --rays", file=sys.stderr)
-    elif output is None and hits is None:
-        output = Path(f"{Path(scene).stem or 'scene'}.png")
-    if output is not None:
-        typed.output(output, "--output", ".png")
-    if hits is not None:
-        typed.output(hits, "--hits", ".npz")
+        pictures.check_rays_alone(size, camera, output, hits, map_)
+    output = pictures.check_outputs(scene, output, hits)
     shape, chosen = typed.size(size), typed.settings(preset, set_ or [])
     loaded, chosen = files.open_scene(scene, frame, chosen, preset, set_)
     files.check_map(map_, loaded, chosen)
-    listed = None if rays is None else typed.rays(rays)
     view = None if rays is not None else typed.camera(camera or [], loaded, chosen, shape)
+    found = pictures.traced(loaded, chosen, view, shape, threads, rays)
 
-    from jaart.core.picture import finish
     from jaart.core.quality import quality
-    from jaart.core.render import render as trace_rays
 
-    report.say_compiling(loaded, chosen)
-    with bars.counted("rays") as progress:
-        found = trace_rays(loaded, chosen, view, shape, rays=listed, threads=threads, progress=progress)
     errors = quality(found, loaded) if loaded.model is not None or map_.endswith("_error") else None
-    print(report.hits_line(found, loaded, errors))
-    report.say_notes(loaded, chosen, found)
+    pictures.say(found, loaded, chosen, errors)
     if output is not None:
-        with bars.counted("light") as progress:
-            colours = finish(found, loaded, map_, errors, progress=progress, threads=threads)
-        files.write_picture(colours, found, loaded, errors, map_, output)
+        pictures.write_picture(found, loaded, map_, errors, threads, output)
     if hits is not None:
         files.write_hits(found, hits)
 
@@ -239,17 +218,12 @@ def statistics(
     typed.output(output, "--output", ".csv", ".svg")
     shape, chosen = typed.size(size), typed.settings(preset, set_ or [])
     loaded, chosen = files.open_scene(scene, frame, chosen, preset, set_)
-    view = typed.camera(camera or [], loaded, chosen, shape)
+    found = pictures.traced(loaded, chosen, typed.camera(camera or [], loaded, chosen, shape), shape, threads)
 
     from jaart.core.quality import quality
-    from jaart.core.render import render as trace_rays
 
-    report.say_compiling(loaded, chosen)
-    with bars.counted("rays") as progress:
-        found = trace_rays(loaded, chosen, view, shape, threads=threads, progress=progress)
     errors = quality(found, loaded)
-    print(report.hits_line(found, loaded, errors))
-    report.say_notes(loaded, chosen, found)
+    pictures.say(found, loaded, chosen, errors)
     files.write_statistics(found, errors, output)
 
 

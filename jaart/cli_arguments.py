@@ -185,15 +185,6 @@ def output(path: Path, option: str, *suffixes: str) -> None:
         raise FileError(path, f"cannot be written: no permission in the folder {str(path.parent)!r}")
 
 
-def check_rays_alone(camera: list[str] | None, output: Path | None, hits: Path | None, map_: str) -> None:
-    """Refuse options that have no meaning with --rays."""
-    if hits is None:
-        raise usage("--rays", "needs --hits FILE.npz to write to")
-    for option, given in (("--camera", camera), ("--output", output), ("--map", map_ != "shaded")):
-        if given:
-            raise usage(option, "has no meaning with --rays, which make no picture")
-
-
 def which_ray(at: str | None, origin: str | None, direction: str | None) -> tuple[tuple[int, int] | None, Ray | None]:
     """The pixel, or origin and direction: whichever was typed."""
     if at is not None and origin is None and direction is None:
