@@ -37,14 +37,14 @@ def usage(option: str, problem: str) -> typer.BadParameter:
 
 def complete(arguments: Sequence[str], commands: Collection[str]) -> list[str]:
     """Arguments as the parser takes them: "gui" where no command is named, one K=V after each flag."""
-    from jaart.core.io import BUILT_IN
-
     words = list(arguments)
     if not words:
         return ["gui"]
     first = words[0]
     if first in commands or first.startswith("-"):
         return spread(words)
+    from jaart.core.io import BUILT_IN
+
     close = difflib.get_close_matches(first, commands, n=1)
     if close and first not in BUILT_IN and not os.path.exists(first):
         raise typer.BadParameter(f"no command or file is called {first!r}; did you mean {close[0]}?")

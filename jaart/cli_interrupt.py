@@ -9,7 +9,7 @@ from concurrent.futures import Future
 from contextvars import copy_context
 from typing import NoReturn, TypeVar
 
-from jaart.core.io.atomic import none_written
+from jaart.core.unfinished import none_written
 
 T = TypeVar("T")
 

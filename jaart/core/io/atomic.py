@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import os
 import tempfile
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 
 from jaart.core.errors import FileError
-
-#: What is being written, and who may begin or finish a file.
-_PARTS: set[Path] = set()
-_TURN = threading.Lock()
+from jaart.core.unfinished import PARTS, TURN
 
 
 @contextmanager
@@ -27,30 +23,21 @@ def replacing(path: str | PathLike[str]) -> Iterator[Path]:
     target = Path(path)
     temporary: Path | None = None
     try:
-        with _TURN:
+        with TURN:
             handle, name = tempfile.mkstemp(prefix=f".{target.stem}-", suffix=target.suffix, dir=target.parent)
             temporary = Path(name)
-            _PARTS.add(temporary)
+            PARTS.add(temporary)
         os.close(handle)
         yield temporary
         temporary.chmod(_mode(target))
-        with _TURN:
+        with TURN:
             temporary.replace(target)
     except OSError as error:
         raise FileError(target, f"cannot be written: {error.strerror or error}") from error
     finally:
         if temporary is not None:
             temporary.unlink(missing_ok=True)
-            _PARTS.discard(temporary)
-
-
-@contextmanager
-def none_written() -> Iterator[None]:
-    """Remove what is being written; no file is begun or finished in the block. For a process that ends in it."""
-    with _TURN:
-        for part in list(_PARTS):
-            part.unlink(missing_ok=True)
-        yield
+            PARTS.discard(temporary)
 
 
 def _mode(target: Path) -> int:
