@@ -38,7 +38,8 @@ def save_mesh(mesh: Mesh, path: str | PathLike[str], spacing: Vector = (1.0, 1.0
         writer = _writer(path.suffix.lower())
         writer.SetFileName(str(part))
         writer.SetInputData(data)
-        if not writer.Write() or writer.GetErrorCode():
+        writer.Update()  # as Write, but other threads go on meanwhile: that which answers Ctrl-C
+        if writer.GetErrorCode():
             raise FileError(path, "cannot be written: is the disk full?")
 
 
