@@ -14,7 +14,7 @@ from matplotlib.font_manager import FontProperties
 
 from jaart.plot import lettering, style
 from jaart.plot.energy import draw_energy
-from jaart.plot.lettering import Look, Words, put
+from jaart.plot.lettering import Look, Words, measure, pieces, put
 from jaart.plot.projection import draw_projection
 from jaart.plot.ruler import Ruler
 from jaart.plot.style import THEMES, emptied, place
@@ -86,6 +86,22 @@ def test_words_beside_a_place_that_is_not_in_view_are_left_out():
     seen = ink(canvas)
     axes.add_artist(Words((1.5, 0.5), "beyond", "black", 9, (-80, 30), inside=True))
     assert (ink(canvas) == seen).all()
+
+
+@pytest.mark.parametrize("text", ["Step 1 of 2:  12.5", "e at −0.25", "$e_{oc}$ = 3", "", " ", "190\u2009344 rays"])
+def test_a_text_is_all_its_pieces_in_order(text):
+    look = Look(text, 8.5, "#000000")
+    assert "".join(piece.text for piece in pieces(look)) == text
+    whole = RendererAgg(1, 1, 100.0).get_text_width_height_descent(text, FontProperties(size=8.5), "$" in text)
+    assert "$" in text or measure(look, 100.0) == pytest.approx(whole)
+
+
+def test_other_numbers_take_no_new_rasters():
+    canvas = RendererAgg(300, 40, 100.0)
+    put(canvas, Look("step +0.1234567890 of 9 at t = 5", 8.5, "#000000"), 5, 15)
+    before = lettering._raster.cache_info().misses
+    put(canvas, Look("step +0.9072 of 31 at t = 46.85", 8.5, "#000000"), 5, 15)
+    assert lettering._raster.cache_info().misses == before
 
 
 def test_the_same_words_are_rasterised_once():
