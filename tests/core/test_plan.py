@@ -10,7 +10,6 @@ import scipy.spatial
 
 import jaart
 from jaart.core import cell_table, cloud_surfels, filters, lights, meshes, picture, prepare, shade, surfels
-from jaart.core.balls import CloudTracer
 from jaart.core.camera import Camera
 from jaart.core.io import load
 from jaart.core.plan import plan
@@ -36,8 +35,7 @@ def test_what_is_planned_is_what_a_scene_keeps(made: str, name: str) -> None:
     hits = render(scene, settings, size=(12, 12))
     assert {stage: planned[stage].runs for stage in KEPT if stage != "placement" or scene.kind != "cloud"} == {
         stage: key in scene._kept for stage, key in KEPT.items() if stage != "placement" or scene.kind != "cloud"}
-    tracer = prepare.prepared(scene, settings).tracer
-    assert planned["centre fits"].runs == (isinstance(tracer, CloudTracer) and tracer.fits > 0)
+    assert planned["centre fits"].runs == planned["first guess"].runs == (hits.fits > 0)
     assert planned["search"].runs == (hits.hit.any() and name not in ("cylinder", "fill_level", "isosurface"))
 
 

@@ -92,7 +92,7 @@ SEARCHES = (stepping, probe, safe, march, minimise, centres)
 @pytest.mark.parametrize("search", [s for s in PARAMETERS["search"].choices if s != "auto"])
 def test_only_searches_that_are_said_to_ask_for_the_gradient(search: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene, settings, asked = lattice(), Settings(search=search), list[int]()
-    ready, kernel = prepare.prepared(scene, settings).tracer, searcher(check(scene, settings)).py_func
+    ready, kernel = prepare.prepared(scene, settings).tracer, searcher(scene, settings, check(scene, settings)).py_func
     cells = prepare.surfels(scene, settings).cells
 
     def evaluate(_: int, *args: Any) -> Any:
@@ -118,7 +118,7 @@ def test_only_searches_that_are_said_to_ask_for_the_gradient(search: str, monkey
 def test_a_miss_is_proven_where_that_is_planned(proof: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[str] = []
     scene, settings = lattice(), Settings(search="safe", proof=proof)
-    ready, kernel = prepare.prepared(scene, settings).tracer, searcher(check(scene, settings)).py_func
+    ready, kernel = prepare.prepared(scene, settings).tracer, searcher(scene, settings, check(scene, settings)).py_func
     cells = prepare.surfels(scene, settings).cells
     python(monkeypatch, [], safe, probe)
     monkeypatch.setattr(probe, "evaluate_at", lambda _, *args: tangent.tangent_surfel(*args))
