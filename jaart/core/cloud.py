@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels.cover import keep
+from jaart.core.pieces import do_each
 from jaart.core.scene import Array, Scene, frozen
+from jaart.core.telling import tell
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
@@ -22,6 +24,8 @@ DENSITY_K, OUTLIER = 6, 10.0
 AUTO_H = 1.2
 #: Share of a ball's radius that must lie in another ball before it is left out.
 CORE = 0.5
+#: Points whose neighbours a thread finds at a time.
+POINTS_AT_ONCE = 1 << 14
 
 
 def bounds(scene: Scene) -> tuple[Array, Array]:
@@ -69,9 +73,7 @@ def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.intp]]:
 
 def kd_tree(scene: Scene) -> cKDTree:
     """A tree over `local_points` that finds nearest ones."""
-    from scipy.spatial import cKDTree
-
-    return scene.once("kd_tree", (), lambda: cKDTree(local_points(scene)))
+    return scene.once("kd_tree", (), lambda: _tree(local_points(scene)))
 
 
 def nearest_others(points: Array, k: int, tree: cKDTree | None = None) -> tuple[Array, NDArray[np.intp]]:
@@ -79,15 +81,27 @@ def nearest_others(points: Array, k: int, tree: cKDTree | None = None) -> tuple[
 
     A point that stands in the same place is another one. k is clipped to N - 1. tree: over these points.
     """
+    k = min(k, len(points) - 1)
+    distance, index = np.empty((len(points), max(k, 0))), np.empty((len(points), max(k, 0)), np.intp)
+    if k < 1:
+        return distance, index
+    tree = tree or _tree(points)
+
+    def find(rows: NDArray[np.intp]) -> None:
+        away, which = tree.query(points[rows], k + 1)
+        itself = which == rows[:, None]
+        itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
+        distance[rows], index[rows] = away[~itself].reshape(-1, k), which[~itself].reshape(-1, k)
+
+    # points of a leaf together, since they read the same parts of the tree
+    do_each(find, [tree.indices[i:i + POINTS_AT_ONCE] for i in range(0, len(points), POINTS_AT_ONCE)], progress=tell)
+    return distance, index
+
+
+def _tree(points: Array) -> cKDTree:
     from scipy.spatial import cKDTree
 
-    k = min(k, len(points) - 1)
-    if k < 1:
-        return np.empty((len(points), 0)), np.empty((len(points), 0), np.intp)
-    distance, index = (tree or cKDTree(points)).query(points, k + 1, workers=-1)
-    itself = index == np.arange(len(points))[:, None]
-    itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
-    return distance[~itself].reshape(-1, k), index[~itself].reshape(-1, k)
+    return cKDTree(points)
 
 
 def spacing(scene: Scene) -> float:

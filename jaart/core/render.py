@@ -21,6 +21,7 @@ from jaart.core.prepare import Prepared
 from jaart.core.records import Array, Hits
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings, preset
+from jaart.core.telling import stoppable
 from jaart.core.tiles import STEPS, TILE, Pixels, columns_for, in_blocks, pixels_at, tile_of, tiles
 from jaart.core.tracers import NO_BEGINS, NO_BLOCKS
 from jaart.core.warm import warm_up
@@ -52,8 +53,9 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
     """
     settings = settings or preset("best")
     job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays, any_hit)
-    warm_up(scene, settings)
-    ready = prepare.prepared(scene, visible.seen(scene, settings, job.camera, size), cancel)
+    with stoppable(cancel):
+        warm_up(scene, settings)
+        ready = prepare.prepared(scene, visible.seen(scene, settings, job.camera, size), cancel)
     count, begin = threads or os.cpu_count() or 1, time.perf_counter()
     with ThreadPoolExecutor(count) as pool:
         watch = _Watch(progress, cancel, job.count)
