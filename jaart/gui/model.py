@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from qtpy.QtCore import QObject, Signal
+from qtpy.QtCore import QObject
 
 from jaart.core.camera import Camera
 from jaart.core.records import Hits, Quality, Trace
@@ -13,13 +13,13 @@ from jaart.core.scene import Scene
 from jaart.core.settings import PRESETS, Settings, preset
 from jaart.gui import navigation, results, tasks
 from jaart.gui.computers import Computers
-from jaart.gui.look import Look
 from jaart.gui.measurer import Measurer
 from jaart.gui.navigation import Bounds
 from jaart.gui.notes import Notes
 from jaart.gui.preparing import Preparing
 from jaart.gui.shader import Shader
-from jaart.gui.suit import refused_name, suited
+from jaart.gui.signals import Signals
+from jaart.gui.suit import of_preset, refused_name
 from jaart.gui.tasks import Known, Made, Opened
 from jaart.gui.worker import Worker
 
@@ -33,29 +33,14 @@ DRAG_SECONDS = 0.03
 PICTURE = (512, 512)
 
 
-class SceneModel(Look):
+class SceneModel(Signals):
     """Scene, settings, camera, picture, picked ray and theme, and the work that follows their changes.
 
     Pixels (x, y) count from the top left of the full picture of `size` (width, height). Files are
     read, and pictures and traces made, in a worker thread; results arrive as signals. Settings that make no sense in
-    the scene leave the last picture; `fault` holds the setting that is refused and why.
+    the scene leave the last picture; `fault` holds the setting that is refused and why. `base` are the values of the
+    preset as they suit the scene.
     """
-
-    scene_changed = Signal()
-    settings_changed = Signal()
-    camera_changed = Signal()
-    hits_changed = Signal()
-    picked_changed = Signal()
-    trace_changed = Signal()
-    step_changed = Signal()
-    progressed = Signal(float)
-    staged = Signal(str, float)
-    begun = Signal()
-    settled = Signal()
-    failed = Signal(str)
-    fault_changed = Signal()
-    known_changed = Signal()
-    said = Signal(str)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -63,7 +48,7 @@ class SceneModel(Look):
         self.camera: Camera | None = None
         self.bounds: Bounds = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
         self.preset = next(iter(PRESETS))
-        self.settings = preset(self.preset)
+        self.settings = self.base = preset(self.preset)
         self.known: Known | None = None
         self.fault: tuple[str, str] | None = None
         self.size = PICTURE
@@ -105,23 +90,27 @@ class SceneModel(Look):
 
     def open(self, source: str | PathLike[str], frame: int | None = None, camera: Camera | None = None) -> None:
         """Read a scene; when it cannot be read, `failed` says why and the old scene stays."""
-        settings, base, before = self.settings, preset(self.preset), self.scene
+        name, before = self.preset, self.scene
+        settings = self.settings if self.settings != self.base else None
         self.said.emit(f"Reading {source} …")
-        self._worker.submit("open", lambda job: tasks.read(job, source, frame, settings, base, before),
+        self._worker.submit("open", lambda job: tasks.read(job, source, frame, settings, name, before),
                             lambda opened: self._opened(opened, camera))
 
     def choose_preset(self, name: str) -> None:
         """Take a preset's values; those that make no sense in the scene are replaced, and `said` says so."""
-        self.preset, values, scene = name, preset(name), self.scene
+        scene = self.scene
         if scene is None:
-            self.set_settings(values)
+            self.set_settings(preset(name))
             return
         self._worker.cancel("picture")
-        self._worker.submit("open", lambda job: suited(scene, values, values), lambda made: self._take(*made))
+        self._worker.submit("open", lambda job: of_preset(scene, name), lambda made: self._take(name, *made))
 
-    def _take(self, settings: Settings, changed: str) -> None:
+    def _take(self, name: str, settings: Settings, changed: str) -> None:
         traced = settings.key("rays") == self.settings.key("rays") and self.fault is None
+        same, self.preset, self.base = settings == self.settings, name, settings
         self.set_settings(settings)
+        if same:
+            self.settings_changed.emit()  # what the values are compared with may be new
         if traced and (self.hits is None or self.hits.camera != self.camera or not self.complete):
             self._render()  # what was under way was stopped
         if changed:
@@ -136,7 +125,9 @@ class SceneModel(Look):
         old, self.settings = self.settings, settings
         if settings == old:
             return
-        self.preset = next((name for name in PRESETS if preset(name) == settings), self.preset)
+        for name in PRESETS:
+            if preset(name) == settings:
+                self.preset, self.base = name, settings
         refused = self.fault is not None
         self._set_fault(None)
         if self.hits is not None:
@@ -206,7 +197,7 @@ class SceneModel(Look):
         same = self.scene is not None and self.scene.source == scene.source and self.bounds == bounds
         for kind in ("picture", "trace"):
             self._worker.cancel(kind)
-        self.scene, self.bounds, self.known = scene, bounds, None
+        self.scene, self.bounds, self.base, self.known = scene, bounds, opened.base, None
         self._set_fault(None)
         self.hits = self.quality = self.trace = self._full = None
         self.step = 0
