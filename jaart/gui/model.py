@@ -57,6 +57,7 @@ class SceneModel(Signals):
         self._full: tuple[Hits, Quality | None] | None = None
         self.picked: tuple[int, int] | None = None
         self.trace, self.step = None, 0  # type: Trace | None, int
+        self._stopped = False
         self._worker, self._painter = Worker(self), Worker(self)
         self.shader, self.measurer = Shader(self), Measurer(self)
         self.notes, self._slow = Notes(self), Preparing(self)
@@ -87,6 +88,12 @@ class SceneModel(Signals):
     def current(self) -> bool:
         """Whether the picture is of the settings, and no newer one is under way."""
         return self.hits is not None and self.hits.settings.key("rays") == self.settings.key("rays")
+
+    @property
+    def halted(self) -> bool:
+        """Whether the picture that was asked for last was stopped before it was done."""
+        return self._stopped and not (self.complete and self.current and self.hits is not None
+                                      and self.hits.camera == self.camera)
 
     def open(self, source: str | PathLike[str], frame: int | None = None, camera: Camera | None = None) -> None:
         """Read a scene; when it cannot be read, `failed` says why and the old scene stays."""
@@ -184,6 +191,7 @@ class SceneModel(Signals):
 
     def stop(self) -> None:
         """Stop what is being read, rendered, traced, shaded or measured; what is shown stays."""
+        self._stopped = True
         self._computers.cancel()
         self._slow.stop()
         self.said.emit("Stopped")
@@ -230,6 +238,7 @@ class SceneModel(Signals):
         scene, settings, camera = self.scene, self.settings, self.camera
         size = results.smaller(self.hits, self.size, DRAG_SECONDS) if dragging else self.size
         self._slow.start()
+        self._stopped = False
         self._worker.submit("picture", lambda job: tasks.picture(job, scene, settings, camera, size, dragging),
                             self._made, self._show, brief=dragging)
 
