@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from qtpy.QtCore import QObject
@@ -26,8 +27,7 @@ from jaart.gui.worker import Worker
 if TYPE_CHECKING:
     from os import PathLike
 
-#: While the camera is dragged, pictures are made smaller until one takes about this long [s].
-DRAG_SECONDS = 0.03
+    from jaart.core.chosen import Chosen
 
 #: Size of a picture in pixels when nobody says.
 PICTURE = (512, 512)
@@ -38,8 +38,7 @@ class SceneModel(Signals):
 
     Pixels (x, y) count from the top left of the full picture of `size` (width, height). Files are
     read, and pictures and traces made, in a worker thread; results arrive as signals. Settings that make no sense in
-    the scene leave the last picture; `fault` holds the setting that is refused and why. `base` are the values of the
-    preset as they suit the scene.
+    the scene leave the last picture; `fault` holds what is refused and why, `base` the preset's values for the scene.
     """
 
     def __init__(self, parent: QObject | None = None) -> None:
@@ -105,8 +104,7 @@ class SceneModel(Signals):
 
     def choose_preset(self, name: str) -> None:
         """Take a preset's values; those that make no sense in the scene are replaced, and `said` says so."""
-        scene = self.scene
-        if scene is None:
+        if (scene := self.scene) is None:
             self.set_settings(preset(name))
             return
         self._worker.cancel("picture")
@@ -235,17 +233,21 @@ class SceneModel(Signals):
     def _render(self, dragging: bool = False) -> None:
         if self.scene is None or self.camera is None:
             return
-        scene, settings, camera = self.scene, self.settings, self.camera
-        size = results.smaller(self.hits, self.size, DRAG_SECONDS) if dragging else self.size
+        size = results.smaller(self.hits, self.size) if dragging else self.size
+        what = self.scene, self.settings, self.camera, size, dragging, self._choose
         self._slow.start()
         self._stopped = False
-        self._worker.submit("picture", lambda job: tasks.picture(job, scene, settings, camera, size, dragging),
-                            self._made, self._show, brief=dragging)
+        self._worker.submit("picture", lambda job: tasks.picture(job, *what), self._made, self._show, brief=dragging)
 
     def _made(self, made: Made) -> None:
         known, self.known = self.known, made.known
         self._show(made.hits)
         if made.known != known:
+            self.known_changed.emit()
+
+    def _choose(self, values: Chosen) -> None:
+        if self.known is not None and values != self.known.values:
+            self.known = replace(self.known, values=values)
             self.known_changed.emit()
 
     def show_quality(self, quality: Quality | None) -> None:
@@ -266,9 +268,8 @@ class SceneModel(Signals):
     def _trace(self) -> None:
         if self.scene is None or self.camera is None or self.picked is None or self.fault is not None:
             return
-        scene, settings, camera, size, pixel = self.scene, self.settings, self.camera, self.size, self.picked
-        self._worker.submit("trace", lambda job: tasks.ray(scene, settings, camera, size, pixel), self._traced,
-                            brief=True)
+        what = self.scene, self.settings, self.camera, self.size, self.picked
+        self._worker.submit("trace", lambda job: tasks.ray(*what), self._traced, brief=True)
 
     def _traced(self, trace: Trace) -> None:
         same = self.trace is not None and self.trace.pixel == trace.pixel

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING
@@ -83,8 +84,8 @@ def bounds(scene: Scene, settings: Settings) -> Bounds:
 
 
 def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int],
-            dragging: bool) -> Made:
-    """A picture; coarse ones are shown while it is made."""
+            dragging: bool, take: Callable[[Chosen], None]) -> Made:
+    """A picture; coarse ones are shown while it is made, and what its settings come to is taken before that."""
     from jaart.core.meaning import check
     from jaart.core.render import render
     from jaart.core.warm import needs_compile
@@ -92,6 +93,7 @@ def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tu
     if needs_compile(scene, settings):
         job.say("Compiling kernels that are needed for the first time on this machine; this takes some seconds …")
     values = check(scene, settings)
+    job.hand(take, values)
     with told(job.watch):
         hits = render(scene, settings, camera, size, progress=None if dragging else job.progress, cancel=job.cancel,
                       picture=None if dragging else job.partial)

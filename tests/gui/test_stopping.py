@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 import pytest
-from patience import PATIENCE, settle
+from patience import PATIENCE, choose, settle
 from qtpy.QtCore import Qt
 from qtpy.QtTest import QTest
 
@@ -122,3 +122,17 @@ def test_a_stopped_picture_is_called_so_and_has_no_numbers_of_another(qtbot, win
     qtbot.waitUntil(lambda: not panel.picture.pixmap().isNull(), timeout=PATIENCE)
     assert status.state.text() == "Picture of 192 × 192 rays"
     assert "of rays hit" in status.figures.text()
+
+
+def test_words_follow_a_value_before_its_picture_is_done(qtbot, window, held):
+    model, rows = window.model, window.docks["Parameters"].panel.rows
+    choose(rows["trust"].word, "radius")
+    model.set_value("h", 0.8)
+    slider = rows["h"].slider
+    slider.setFocus()
+    QTest.keyClick(slider, Qt.Key.Key_Right)
+    qtbot.waitUntil(lambda: rows["radius"].box.text() == "2.65625", timeout=PATIENCE)  # 3.125 h
+    assert model.computing and not model.complete
+    assert rows["trust"].box.text() == rows["radius"].box.text()
+    model.stop()
+    settle(qtbot, model)
