@@ -86,12 +86,14 @@ class StatisticsPanel(Panel):
         self.model.said.emit(f"Statistics written to {path}")
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Draw for the new size; the export buttons stay at the right edge, one below the other."""
+        """Draw for the new size; the export buttons stay in the upper right corner, above titles."""
         super().resizeEvent(event)
         self.picture.setGeometry(self.rect())
         self.mark_dirty()
-        for row, button in enumerate(self.buttons):
-            button.move(self.width() - button.width() - 6, 6 + row * (button.height() + 4))
+        left = self.width() - 6
+        for button in reversed(self.buttons):
+            left -= button.width()
+            button.move(left, 2)
             button.raise_()
 
     def _button(self, kind: str) -> QToolButton:

@@ -41,6 +41,16 @@ def test_the_step_bar_steps_by_button_and_by_key(qtbot, standard):
     assert not bar.forward.isEnabled()
 
 
+def test_a_narrow_step_bar_says_how_a_start_ended(qtbot, standard):
+    bar = shown(qtbot, StepBar(standard), width=345, height=84)
+    pick(qtbot, standard, 3)
+    for width, below in ((345, True), (600, False), (345, True)):
+        bar.resize(width, 84)
+        QApplication.processEvents()
+        assert bar.state.width() >= bar.state.fontMetrics().horizontalAdvance("start 1 of 1: left the trust region")
+        assert (bar.state.y() > bar.back.geometry().bottom() - 4) == below
+
+
 def test_play_goes_to_the_last_step_and_stops(qtbot, standard):
     bar = shown(qtbot, StepBar(standard), height=60)
     trace = pick(qtbot, standard, 3)
