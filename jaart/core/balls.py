@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core.kernels import ball_ray, bundle
+from jaart.core.kernels import ball_ray
+from jaart.core.kernels.bundle import NODES, ROOM, Room
 from jaart.core.kernels.gather import Grid, gather_ball
 from jaart.core.kernels.guess import GUESS_WIDTH
 from jaart.core.kernels.leaving import ROUNDING
@@ -91,16 +92,15 @@ class CloudTracer:
               any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
         """Trace some rays, in the cloud's own coordinates, into their rows of the columns; see `Tracer`."""
         blur = ROUNDING * float(np.abs(self.cloud.offset).max())
-        columns, numbers = np.empty(bundle.FLOATS), np.empty(bundle.NUMBERS, np.int64)
         x, y, z = self.cloud.offset.tolist()
-        done = 0
+        done, room = 0, bundle_room()
 
         def ask(sites: Sites, pool: Pool) -> int:
             nonlocal done
             pool.have_heap(HEAP)
             balls = Balls(sites, self.cloud.radii, self.cloud.tree, int(self.stretches), int(any_hit), (x, y, z), blur)
             done, written = ball_ray.trace_ball_rays(balls, self.plan, origins, directions, pixels, done, out, log,
-                                                     columns, numbers, pool.work, pool.fit, pool.keys, pool.items)
+                                                     room, pool.work, pool.fit, pool.keys, pool.items)
             return int(written)
 
         return served(self.sites, ask)
@@ -108,3 +108,9 @@ class CloudTracer:
     def blocks(self, view: View) -> Array:
         """Nothing is known: the tree leads rays through what is empty."""
         return NO_BLOCKS
+
+
+def bundle_room() -> Room:
+    """Room for the balls of a bundle."""
+    return Room(np.empty(5 * ROOM), np.empty(ROOM, np.int64), np.empty(ROOM, np.int64), np.empty(NODES),
+                np.empty(NODES, np.int64))

@@ -13,10 +13,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core.kernels import bundle
 from jaart.core.kernels import records as r
 from jaart.core.kernels.address import floats_at, load
 from jaart.core.kernels.blocks import FITTED, GATHERER, HEAP, KEPT, MORE, is_short, kept_in, publish, take_back
+from jaart.core.kernels.bundle import (
+    ALONE,
+    MOST,
+    Cone,
+    Listed,
+    Room,
+    cone_about,
+    horizon,
+    last_of,
+    list_more,
+    next_size,
+    nothing_listed,
+    push_pierced,
+)
 from jaart.core.kernels.call import evaluate_at, gather_at, search_from
 from jaart.core.kernels.counts import forget_counts, write_counts
 from jaart.core.kernels.guess import GUESS_WIDTH, STATE, is_near, meets, show_centre, write_guess
@@ -27,7 +40,7 @@ from jaart.core.kernels.log import end_log
 from jaart.core.kernels.near import near_in, surfels_near
 from jaart.core.kernels.packet import is_bad
 from jaart.core.kernels.pierce import NOTHING, ROOM, Balls, chord, next_item, push_root
-from jaart.core.kernels.ray import added, no_hit, visiting, write_end
+from jaart.core.kernels.ray import added, no_hit, ray_of, visiting, write_end
 from jaart.core.kernels.records import Array, Out, Plan, RayEnd, Sites, Start, Vector
 from jaart.core.kernels.stretch import has_hit
 from jaart.core.kernels.tree import Tree
@@ -37,13 +50,15 @@ from jaart.core.kernels.vectors import along, dot
 Ints = NDArray[np.int64]
 #: Promises closer to a hit than this, in h, are of the same sheet.
 _SAME_SHEET = 0.25
+#: What a ray lacks for which more balls are to be listed.
+MORE_BALLS = 0
 _ZERO: Any = np.int64(0)
 _NOT_ASKED: Any = np.int64(-1)
 #: Farther than this from what is kept at a ball's centre, in h, no origin is on the surface.
 _BESIDE = 0.4
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def guess_at(sites: Sites, ball: int) -> int:
     """Address of what is kept at the centre of a ball that was made ready."""
     return kept_in(load(sites.slots, ball))
@@ -51,10 +66,8 @@ def guess_at(sites: Sites, ball: int) -> int:
 
 @kernel(STRICT)
 def make_ready(sites: Sites, plan: Plan, ball: int, work: Array, fit: Array) -> bool:
-    """Gather a ball's surfels and keep the surface at its centre, where nobody did; whether there was room for it."""
+    """Gather a ball's surfels and keep the surface at its centre; whether there was room for it."""
     pool, place = sites.pool, (ball, _ZERO, _ZERO)
-    if load(sites.slots, ball) != 0:
-        return True
     address = gather_at(pool[GATHERER], pool, place)
     if address == 0:
         return False
@@ -72,7 +85,7 @@ def make_ready(sites: Sites, plan: Plan, ball: int, work: Array, fit: Array) -> 
     return True
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, begin: Leave, number: int) -> Start:
     """Where the search of a ball begins: at its promise, NaN for none, or at its near side for a stretch.
 
@@ -92,7 +105,7 @@ def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, begin: L
     return Start((ball, _ZERO, _ZERO), base, foot, s, low, high, nan, number)
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def may_be_left(balls: Balls, ball: int, o: Vector, h: float) -> bool:
     """Whether the ray's origin, which a ball must hold, may be on the surface: what is kept of it is not far."""
     x = (o[0] - balls.sites.centres[ball, 0], o[1] - balls.sites.centres[ball, 1], o[2] - balls.sites.centres[ball, 2])
@@ -109,7 +122,7 @@ def leaving(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, work: Arr
     return leave(surfels_near(balls.sites, (ball, _ZERO, _ZERO)), x, o, d, plan, balls.blur, work, fit)
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def in_units(tree: Tree, o: Vector, h: float) -> Vector:
     """An origin in units of the cloud's longest edge or of h, whichever is longer."""
     unit = h
@@ -118,13 +131,14 @@ def in_units(tree: Tree, o: Vector, h: float) -> Vector:
     return o[0] / unit, o[1] / unit, o[2] / unit
 
 
-@kernel(STRICT)
-def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, columns: Array, numbers: Ints, listed: int,
-                   rows: Array, work: Array, fit: Array, keys: Array, items: Ints) -> RayEnd:
-    """The first hit of a ray, or how its last start ended; it ends at once where the pool is short of room.
+@kernel(STRICT, inline=True)
+def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, room: Room, listed: Listed, rows: Array,
+                   work: Array, fit: Array, keys: Array, items: Ints) -> RayEnd:
+    """The first hit of a ray, or how its last start ended; it ends at once where the pool is short of room, or more
+    balls are to be listed.
 
-    o, d: origin and unit direction in the cloud's local frame; columns, numbers: the balls of its bundle, so many as
-    listed, ALONE where there are none; keys, items: room for the heap.
+    o, d: origin and unit direction in the cloud's local frame; room, listed: the balls of its bundle; keys, items: room
+    for the heap.
     """
     if is_bad(in_units(balls.tree, o, plan.rule.h), d):
         return no_hit(r.BAD_RAY)
@@ -133,17 +147,20 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, columns: Arra
     end, best, visited, number = no_hit(r.BACKGROUND), no_hit(r.BACKGROUND), 0, 0
     found, limit, first, slack = False, inf, inf, _SAME_SHEET * plan.rule.h
     begin = Leave(0.0, _NOT_ASKED, nan)
-    size = (push_root(balls, o, inverse, keys, items) if listed == bundle.ALONE
-            else bundle.push_pierced(balls, columns, numbers, listed, o, d, keys, items))
+    size = (push_root(balls, o, inverse, keys, items) if listed.balls == ALONE
+            else push_pierced(balls, room, listed, o, d, keys, items))
+    known = horizon(room, listed)
     while True:
-        size, item = next_item(balls, o, d, inverse, limit, keys, items, size)
+        size, item = next_item(balls, o, d, inverse, min(limit, known), keys, items, size)
+        if item == NOTHING and known < limit:
+            return unfinished(end)
         if item == NOTHING:
             break
         ball = item if item < count else item - count
         if item == ROOM:
             balls.sites.pool[HEAP] = 1
             return end
-        if not make_ready(balls.sites, plan, ball, work, fit):
+        if load(balls.sites.slots, ball) == 0 and not make_ready(balls.sites, plan, ball, work, fit):
             return end
         guess = floats_at(guess_at(balls.sites, ball), GUESS_WIDTH)
         if begin.used < 0 and begin.t == 0.0 and may_be_left(balls, ball, o, plan.rule.h):
@@ -173,7 +190,7 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, columns: Arra
     return visiting(end, visited) if not found else finished(best, end, visited)
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def unpromising(end: RayEnd, kept: int) -> RayEnd:
     """A ray's end after a ball that promises no hit: it is said where that has no normal. kept: the state at its
     centre.
@@ -183,7 +200,14 @@ def unpromising(end: RayEnd, kept: int) -> RayEnd:
                   end.cells, end.lowered, end.gap, end.rows, end.missing)
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
+def unfinished(end: RayEnd) -> RayEnd:
+    """The end of a ray for which more balls are to be listed."""
+    return RayEnd(end.state, end.t, end.point, end.n, end.energy, end.off, end.iterations, end.evaluations, end.used,
+                  end.cells, end.lowered, end.gap, end.rows, MORE_BALLS)
+
+
+@kernel(STRICT, inline=True)
 def finished(best: RayEnd, last: RayEnd, visited: int) -> RayEnd:
     """The best hit with the work that all starts took."""
     return RayEnd(best.state, best.t, best.point, best.n, best.energy, best.off, best.iterations, last.evaluations,
@@ -199,29 +223,46 @@ def unowned_balls(balls: Balls) -> Balls:
                  balls.blur)
 
 
+@kernel(STRICT)
+def unowned_room(room: Room) -> Room:
+    """Room for a bundle, its arrays without owners."""
+    return Room(unowned(room.columns), unowned(room.numbers), unowned(room.pierced), unowned(room.keys),
+                unowned(room.nodes))
+
+
+@kernel(STRICT, inline=True)
+def trace_listed(balls: Balls, plan: Plan, o: Vector, d: Vector, cone: Cone, room: Room, listed: Listed, rows: Array,
+                 work: Array, fit: Array, keys: Array, items: Ints) -> tuple[RayEnd, Listed]:
+    """A ray's end, and what its bundle has listed then."""
+    while True:
+        end = trace_ball_ray(balls, plan, o, d, room, listed, rows, work, fit, keys, items)
+        if end.missing != MORE_BALLS:
+            return end, listed
+        forget_counts(fit)
+        listed = list_more(balls, cone, room, listed)
+
+
 @kernel(STRICT, entry=True)
 def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array, pixels: Ints, begin: int, out: Out,
-                    rows: Array, columns: Array, numbers: Ints, work: Array, fit: Array, keys: Array,
-                    items: Ints) -> tuple[int, int]:
+                    rows: Array, room: Room, work: Array, fit: Array, keys: Array, items: Ints) -> tuple[int, int]:
     """Trace rays and write each into its row of the columns; returns how many are done, those before one for which
     the pool was short, and the rows of the log.
 
-    origins, directions: (R, 3) in the cloud's own coordinates; pixels: rows to trace, from begin on; columns, numbers:
-    room for a bundle; the others as of `trace_ball_ray`.
+    origins, directions: (R, 3) in the cloud's own coordinates; pixels: rows to trace, from begin on; the others as of
+    `trace_ball_ray`.
     """
-    balls, log, scratch, fitted = unowned_balls(balls), unowned(rows), unowned(work), unowned(fit)
-    near, which, waiting, entries, rays = (unowned(columns), unowned(numbers), unowned(keys), unowned(items),
-                                           unowned(pixels))
-    at, size, written = begin, bundle.MOST, 0
+    balls, room, log, scratch, fitted = unowned_balls(balls), unowned_room(room), unowned(rows), unowned(work), unowned(fit)
+    waiting, entries, rays = unowned(keys), unowned(items), unowned(pixels)
+    at, size, written = begin, MOST, 0
     while at < rays.shape[0]:
-        last = bundle.last_of(size, at, rays.shape[0])
-        listed = bundle.listed(balls, origins, directions, rays[at:last], size, near, which, waiting)
-        size = bundle.next_size(size, listed)
+        last = last_of(size, at, rays.shape[0])
+        cone = cone_about(origins, directions, rays[at:last], balls.offset)
+        listed = nothing_listed(balls, cone, min(size, last - at), room, waiting)
         for i in range(at, last):
             to = rays[i]
-            o = (origins[to, 0] - balls.offset[0], origins[to, 1] - balls.offset[1], origins[to, 2] - balls.offset[2])
-            d = (directions[to, 0], directions[to, 1], directions[to, 2])
-            end = trace_ball_ray(balls, plan, o, d, near, which, listed, log, scratch, fitted, waiting, entries)
+            o, d = ray_of(origins, directions, to)
+            end, listed = trace_listed(balls, plan, along(o, balls.offset, -1.0), d, cone, room, listed, log, scratch,
+                                       fitted, waiting, entries)
             if is_short(balls.sites.pool):
                 forget_counts(fitted)
                 return i, 0
@@ -230,5 +271,5 @@ def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array,
                 out.point[to, axis] += balls.offset[axis]
             write_counts(out, to, fitted)
             written = end.rows
-        at = last
+        at, size = last, next_size(size, listed.balls)
     return rays.shape[0], written

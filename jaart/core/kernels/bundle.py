@@ -3,6 +3,9 @@
 Rays beside one another pierce nearly the same balls. All of them stay within a cone about one line, which widens as the
 rays part; a ball that it misses is met by none. Those that are left stand in columns, and each ray tests them as
 vectors. It meets the balls that it would meet alone, number for number.
+
+Most rays end at the first sheet, so balls are listed up to a horizon, nearest nodes first. A ray that gets there without
+an end has more of them listed, and begins anew.
 """
 
 from __future__ import annotations
@@ -13,25 +16,47 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core.kernels.heap import pop, push
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.pierce import LEAF_ROOM, Balls, push_ball
 from jaart.core.kernels.records import Array, Unsigned, Vector
-from jaart.core.kernels.tree import DEEPEST, span_of
+from jaart.core.kernels.tree import LEAF, span_of
 from jaart.core.kernels.vectors import along, dot, length, scaled
 
 Ints = NDArray[np.int64]
 #: Rays of a bundle at most: a block of 8 × 8 pixels. So few do not go together.
 MOST, FEW = 64, 4
-#: Balls that a bundle may meet at most; more cost each ray more than the way through the tree.
-ROOM = 512
+#: Balls that a bundle may list at most; more cost each ray more than the way through the tree. So many at once.
+ROOM, ROUND = 512, 64
+#: Nodes that may wait.
+NODES = 512
 #: Rays that have no list of balls.
 ALONE = -1
 _COLUMN = [np.uint64(ROOM * i) for i in range(5)]
 X, Y, Z, RADIUS, INSIDE = _COLUMN[0], _COLUMN[1], _COLUMN[2], _COLUMN[3], _COLUMN[4]
-#: Floats and whole numbers that a bundle takes.
-FLOATS, NUMBERS = 5 * ROOM, ROOM + DEEPEST
 #: By what share a cone is widened, and a ball in the test that goes before the exact one, against rounding.
 _WIDER, _LARGER = 1e-9, 1.0 + 1e-14
+
+
+class Room(NamedTuple):
+    """Where a bundle's balls are written.
+
+    columns: (5 ROOM,) the parts of their centres, radii, and how far in them the ray at hand is; numbers: (ROOM,) of
+    the balls; pierced: (ROOM,) which of them a ray pierces; keys, nodes: (NODES,) a heap of the tree's nodes.
+    """
+
+    columns: Array
+    numbers: Ints
+    pierced: Ints
+    keys: Array
+    nodes: Ints
+
+
+class Listed(NamedTuple):
+    """What a bundle has listed: so many balls, ALONE where there are too many, and so many nodes that wait."""
+
+    balls: int
+    nodes: int
 
 
 class Cone(NamedTuple):
@@ -47,7 +72,7 @@ class Cone(NamedTuple):
     parting: float
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def cone_about(origins: Array, directions: Array, rays: Ints, offset: Vector) -> Cone:
     """The cone about the middle one of some rays, in the frame with that offset; rays without a meaning aside."""
     middle = rays[rays.shape[0] // 2]
@@ -63,13 +88,13 @@ def cone_about(origins: Array, directions: Array, rays: Ints, offset: Vector) ->
     return Cone(along(o, offset, -1.0), d, (1.0 / d[0], 1.0 / d[1], 1.0 / d[2]), sqrt(wide), sqrt(parting))
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def is_sound(cone: Cone) -> bool:
     """Whether a cone is one: its axis is a ray, and how far the rays part is known."""
     return abs(dot(cone.d, cone.d) - 1.0) < 1e-6 and length(cone.axis) + cone.wide + cone.parting < inf
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def width_at(cone: Cone, middle: Vector, radius: float) -> float:
     """How far from the axis a ray may be while it is within a radius of a point."""
     far = length(along(middle, cone.axis, -1.0)) + radius + cone.wide
@@ -77,18 +102,18 @@ def width_at(cone: Cone, middle: Vector, radius: float) -> float:
 
 
 @kernel(STRICT)
-def may_enter(balls: Balls, node: int, cone: Cone) -> bool:
-    """Whether a ray of the cone may meet a node's box."""
+def push_node(balls: Balls, node: int, cone: Cone, room: Room, waiting: int) -> int:
+    """Let a node wait whose box a ray of the cone may meet; returns how many wait."""
     low = (balls.tree.low[node, 0], balls.tree.low[node, 1], balls.tree.low[node, 2])
     high = (balls.tree.high[node, 0], balls.tree.high[node, 1], balls.tree.high[node, 2])
     half = scaled(along(high, low, -1.0), 0.5)
     more = width_at(cone, along(low, half, 1.0), length(half))
     enter, leave = span_of((low[0] - more, low[1] - more, low[2] - more), (high[0] + more, high[1] + more,
                                                                            high[2] + more), cone.axis, cone.inverse)
-    return enter <= leave and leave >= 0.0
+    return push(room.keys, room.nodes, waiting, enter, node) if enter <= leave and leave >= 0.0 else waiting
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def may_pierce(centre: Vector, radius: float, cone: Cone) -> bool:
     """Whether a ray of the cone may pierce a ball."""
     c, reach = along(centre, cone.axis, -1.0), radius + width_at(cone, centre, radius)
@@ -97,34 +122,46 @@ def may_pierce(centre: Vector, radius: float, cone: Cone) -> bool:
     return dot(aside, aside) <= reach * reach and foot >= -reach
 
 
-@kernel(STRICT)
-def look_up(balls: Balls, cone: Cone, columns: Array, numbers: Ints) -> int:
-    """Write the balls that the rays of a cone may pierce; returns how many, ALONE for more than there is room for."""
-    tree, found, waiting = balls.tree, 0, 1
-    numbers[ROOM] = 0
-    while waiting > 0:
-        waiting -= 1
-        node = numbers[ROOM + waiting]
-        if not may_enter(balls, node, cone):
-            continue
-        if tree.size[node] == 0:
-            numbers[ROOM + waiting], numbers[ROOM + waiting + 1] = tree.first[node], node + 1
-            waiting += 2
-            continue
-        for at in range(tree.first[node], tree.first[node] + tree.size[node]):
-            ball = tree.order[at]
-            c = (balls.sites.centres[ball, 0], balls.sites.centres[ball, 1], balls.sites.centres[ball, 2])
-            if may_pierce(c, balls.radii[ball], cone):
-                if found == ROOM:
-                    return ALONE
-                to = np.uint64(found)
-                columns[X + to], columns[Y + to], columns[Z + to] = c
-                columns[RADIUS + to], numbers[found] = balls.radii[ball], ball
-                found += 1
+@kernel(STRICT, inline=True)
+def list_leaf(balls: Balls, node: int, cone: Cone, room: Room, found: int) -> int:
+    """Write the balls of a leaf that rays of the cone may pierce; returns how many there are then."""
+    tree, columns = balls.tree, room.columns
+    for at in range(tree.first[node], tree.first[node] + tree.size[node]):
+        ball = tree.order[at]
+        c = (balls.sites.centres[ball, 0], balls.sites.centres[ball, 1], balls.sites.centres[ball, 2])
+        if may_pierce(c, balls.radii[ball], cone):
+            to = np.uint64(found)
+            columns[X + to], columns[Y + to], columns[Z + to], columns[RADIUS + to] = c[0], c[1], c[2], balls.radii[ball]
+            room.numbers[found] = ball
+            found += 1
     return found
 
 
 @kernel(STRICT)
+def list_more(balls: Balls, cone: Cone, room: Room, listed: Listed) -> Listed:
+    """List some more balls that the rays of a cone may pierce, or all where any hit will do, nearest nodes first."""
+    found, waiting, tree = listed.balls, listed.nodes, balls.tree
+    enough = ROOM if balls.any_hit == 1 else found + ROUND
+    while waiting > 0 and found < enough:
+        if found > ROOM - LEAF or waiting > NODES - 2:
+            return Listed(ALONE, 0)
+        waiting = pop(room.keys, room.nodes, waiting)
+        node = room.nodes[waiting]
+        if tree.size[node] == 0:
+            waiting = push_node(balls, node + 1, cone, room, waiting)
+            waiting = push_node(balls, tree.first[node], cone, room, waiting)
+        else:
+            found = list_leaf(balls, node, cone, room, found)
+    return Listed(found, waiting)
+
+
+@kernel(STRICT, inline=True)
+def horizon(room: Room, listed: Listed) -> float:
+    """The t from which on a ray may enter balls that are not listed."""
+    return room.keys[0] if listed.nodes > 0 else inf
+
+
+@kernel(STRICT, inline=True)
 def test_all(columns: Array, count: Unsigned, o: Vector, d: Vector) -> None:
     """Write into INSIDE of each ball a number that is below 0 where the ray misses it for certain."""
     for i in range(count):
@@ -135,38 +172,37 @@ def test_all(columns: Array, count: Unsigned, o: Vector, d: Vector) -> None:
         columns[INSIDE + i] = inside if foot >= -radius else -1.0
 
 
-@kernel(STRICT)
-def push_pierced(balls: Balls, columns: Array, numbers: Ints, count: int, o: Vector, d: Vector, keys: Array,
-                 items: Ints) -> int:
+@kernel(STRICT, inline=True)
+def push_pierced(balls: Balls, room: Room, listed: Listed, o: Vector, d: Vector, keys: Array, items: Ints) -> int:
     """Begin with those of a bundle's balls that a ray pierces; returns the heap's size."""
-    test_all(columns, np.uint64(count), o, d)
-    size = 0
-    for i in range(count):
-        if columns[INSIDE + np.uint64(i)] >= 0.0:
-            size = push_ball(balls, numbers[i], o, d, keys, items, size)
+    test_all(room.columns, np.uint64(listed.balls), o, d)
+    pierced = size = 0
+    for i in range(listed.balls):  # without a branch, which nobody could foresee
+        room.pierced[pierced] = room.numbers[i]
+        pierced += 1 if room.columns[INSIDE + np.uint64(i)] >= 0.0 else 0
+    for i in range(pierced):
+        size = push_ball(balls, room.pierced[i], o, d, keys, items, size)
     return size
 
 
 @kernel(STRICT)
-def listed(balls: Balls, origins: Array, directions: Array, rays: Ints, size: int, columns: Array, numbers: Ints,
-           keys: Array) -> int:
-    """Write the balls that some rays may pierce; returns how many, ALONE where each had better look itself.
+def nothing_listed(balls: Balls, cone: Cone, rays: int, room: Room, keys: Array) -> Listed:
+    """What the rays of a cone have listed before one of them asks; ALONE where each had better look itself.
 
-    size: of the bundle, as of `last_of`; keys: of the heap, which must have room for the balls.
+    keys: of the heap of a ray, which must have room for all balls.
     """
-    if min(size, rays.shape[0]) < FEW or keys.shape[0] < ROOM + LEAF_ROOM:
-        return ALONE
-    cone = cone_about(origins, directions, rays, balls.offset)
-    return look_up(balls, cone, columns, numbers) if is_sound(cone) else ALONE
+    if rays < FEW or keys.shape[0] < ROOM + LEAF_ROOM or not is_sound(cone):
+        return Listed(ALONE, 0)
+    return Listed(0, push_node(balls, 0, cone, room, 0))
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def last_of(size: int, begin: int, count: int) -> int:
     """Where of so many rays the bundle ends that begins with one of them; too small a size: where they stay alone."""
     return min(begin + (size - begin % size if size >= FEW else MOST), count)
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def next_size(size: int, found: int) -> int:
     """How many rays the next bundle has: more where few balls were found, fewer where there were too many."""
     if found == ALONE:

@@ -38,7 +38,7 @@ class Balls(NamedTuple):
     blur: float
 
 
-@kernel(EXACT)
+@kernel(EXACT, inline=True)
 def chord(balls: Balls, ball: int, o: Vector, d: Vector) -> tuple[float, float, float]:
     """Distance t of the ray's foot point on a ball's centre, half the chord, NaN for none, and how far the ray passes
     from the centre; the same bits wherever it is asked for.
@@ -50,7 +50,7 @@ def chord(balls: Balls, ball: int, o: Vector, d: Vector) -> tuple[float, float, 
     return foot, sqrt((radius - distance) * (radius + distance)) if distance <= radius else nan, distance
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def push_ball(balls: Balls, ball: int, o: Vector, d: Vector, keys: Array, items: Ints, size: int) -> int:
     """Add a ball that the ray meets, by where it enters it, or by its priority [A 12]; returns the heap's size.
 
@@ -89,7 +89,7 @@ def push_children(balls: Balls, node: int, o: Vector, d: Vector, inverse: Vector
     return size
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def next_item(balls: Balls, o: Vector, d: Vector, inverse: Vector, limit: float, keys: Array, items: Ints,
               size: int) -> tuple[int, int]:
     """The heap's size, and the nearest ball or promise before a limit; NOTHING for none, ROOM for a full heap."""
