@@ -13,7 +13,7 @@ from jaart.core.kernels.bundle import NODES, ROOM, Room
 from jaart.core.kernels.gather import Grid, gather_ball
 from jaart.core.kernels.guess import GUESS_WIDTH
 from jaart.core.kernels.leaving import ROUNDING
-from jaart.core.kernels.pierce import Balls
+from jaart.core.kernels.pierce import LANES, Balls
 from jaart.core.kernels.pinhole import View
 from jaart.core.kernels.records import Out, Plan, Sites
 from jaart.core.kernels.tree import Tree
@@ -39,6 +39,13 @@ class Cloud:
     reach: Array
     tree: Tree
     offset: Array
+
+    @cached_property
+    def leaves(self) -> Array:
+        """The parts of the balls' centres and their radii, as of `Balls`."""
+        made = np.zeros((4, len(self.radii) + LANES))
+        made[:3, :-LANES], made[3, :-LANES] = self.centres[self.tree.order].T, self.radii[self.tree.order]
+        return made.ravel()
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +105,8 @@ class CloudTracer:
         def ask(sites: Sites, pool: Pool) -> int:
             nonlocal done
             pool.have_heap(HEAP)
-            balls = Balls(sites, self.cloud.radii, self.cloud.tree, int(self.stretches), int(any_hit), (x, y, z), blur)
+            balls = Balls(sites, self.cloud.radii, self.cloud.tree, self.cloud.leaves, int(self.stretches), int(any_hit),
+                          (x, y, z), blur)
             done, written = ball_ray.trace_ball_rays(balls, self.plan, origins, directions, pixels, done, out, log,
                                                      room, pool.work, pool.fit, pool.keys, pool.items)
             return int(written)

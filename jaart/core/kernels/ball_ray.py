@@ -219,8 +219,8 @@ def unowned_balls(balls: Balls) -> Balls:
     """Balls, their arrays without owners."""
     tree = balls.tree
     tree = Tree(unowned(tree.low), unowned(tree.high), unowned(tree.first), unowned(tree.size), unowned(tree.order))
-    return Balls(unowned_sites(balls.sites), unowned(balls.radii), tree, balls.stretches, balls.any_hit, balls.offset,
-                 balls.blur)
+    return Balls(unowned_sites(balls.sites), unowned(balls.radii), tree, unowned(balls.leaves), balls.stretches,
+                 balls.any_hit, balls.offset, balls.blur)
 
 
 @kernel(STRICT)

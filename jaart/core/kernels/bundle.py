@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels.heap import pop, push
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.pierce import LEAF_ROOM, Balls, push_ball
+from jaart.core.kernels.pierce import LANES, LEAF_ROOM, Balls, push_ball
 from jaart.core.kernels.records import Array, Unsigned, Vector
-from jaart.core.kernels.tree import LEAF, span_of
-from jaart.core.kernels.vectors import along, dot, length, scaled
+from jaart.core.kernels.tree import BALL_LEAF, Tree, span_of
+from jaart.core.kernels.vectors import along, dot, length
 
 Ints = NDArray[np.int64]
 #: Rays of a bundle at most: a block of 8 × 8 pixels. So few do not go together.
@@ -95,45 +95,65 @@ def is_sound(cone: Cone) -> bool:
 
 
 @kernel(STRICT, inline=True)
-def width_at(cone: Cone, middle: Vector, radius: float) -> float:
-    """How far from the axis a ray may be while it is within a radius of a point."""
-    far = length(along(middle, cone.axis, -1.0)) + radius + cone.wide
-    return cone.wide + cone.parting * far + _WIDER * far
+def width_in(cone: Cone, low: Vector, high: Vector) -> float:
+    """How far from the axis a ray may be within a box: what it parts on the way to the farthest corner."""
+    o = cone.axis
+    x, y, z = max(o[0] - low[0], high[0] - o[0]), max(o[1] - low[1], high[1] - o[1]), max(o[2] - low[2], high[2] - o[2])
+    far = sqrt(x * x + y * y + z * z) + cone.wide
+    return cone.wide + (cone.parting + _WIDER) * far
 
 
-@kernel(STRICT)
-def push_node(balls: Balls, node: int, cone: Cone, room: Room, waiting: int) -> int:
+@kernel(STRICT, inline=True)
+def box_of(tree: Tree, node: int) -> tuple[Vector, Vector]:
+    """Lowest and highest corner of a node's box."""
+    return ((tree.low[node, 0], tree.low[node, 1], tree.low[node, 2]),
+            (tree.high[node, 0], tree.high[node, 1], tree.high[node, 2]))
+
+
+@kernel(STRICT, inline=True)
+def push_node(tree: Tree, node: int, cone: Cone, room: Room, waiting: int) -> int:
     """Let a node wait whose box a ray of the cone may meet; returns how many wait."""
-    low = (balls.tree.low[node, 0], balls.tree.low[node, 1], balls.tree.low[node, 2])
-    high = (balls.tree.high[node, 0], balls.tree.high[node, 1], balls.tree.high[node, 2])
-    half = scaled(along(high, low, -1.0), 0.5)
-    more = width_at(cone, along(low, half, 1.0), length(half))
-    enter, leave = span_of((low[0] - more, low[1] - more, low[2] - more), (high[0] + more, high[1] + more,
-                                                                           high[2] + more), cone.axis, cone.inverse)
+    low, high = box_of(tree, node)
+    w = width_in(cone, low, high)
+    enter, leave = span_of((low[0] - w, low[1] - w, low[2] - w), (high[0] + w, high[1] + w, high[2] + w), cone.axis,
+                           cone.inverse)
     return push(room.keys, room.nodes, waiting, enter, node) if enter <= leave and leave >= 0.0 else waiting
 
 
 @kernel(STRICT, inline=True)
-def may_pierce(centre: Vector, radius: float, cone: Cone) -> bool:
-    """Whether a ray of the cone may pierce a ball."""
-    c, reach = along(centre, cone.axis, -1.0), radius + width_at(cone, centre, radius)
-    foot = dot(c, cone.d)
-    aside = along(c, cone.d, -foot)
-    return dot(aside, aside) <= reach * reach and foot >= -reach
+def test_leaf(balls: Balls, begin: int, cone: Cone, wide: float, room: Room, found: int) -> None:
+    """Write the next LANES balls into the columns, and into INSIDE what is below 0 where no ray of a cone that is so
+    wide pierces one. Those of the leaf that follows are among them.
+    """
+    leaves, columns, o, d = balls.leaves, room.columns, cone.axis, cone.d
+    own, to, count = np.uint64(begin), np.uint64(found), np.uint64(balls.radii.shape[0] + LANES)
+    for i in range(np.uint64(LANES)):
+        x, y, z = leaves[own + i], leaves[count + own + i], leaves[count + count + own + i]
+        radius = leaves[count + count + count + own + i]
+        columns[X + to + i], columns[Y + to + i], columns[Z + to + i], columns[RADIUS + to + i] = x, y, z, radius
+        x, y, z = x - o[0], y - o[1], z - o[2]
+        foot, reach = x * d[0] + y * d[1] + z * d[2], radius + wide
+        x, y, z = x - foot * d[0], y - foot * d[1], z - foot * d[2]
+        columns[INSIDE + i] = reach * reach - (x * x + y * y + z * z)
 
 
 @kernel(STRICT, inline=True)
 def list_leaf(balls: Balls, node: int, cone: Cone, room: Room, found: int) -> int:
     """Write the balls of a leaf that rays of the cone may pierce; returns how many there are then."""
     tree, columns = balls.tree, room.columns
-    for at in range(tree.first[node], tree.first[node] + tree.size[node]):
-        ball = tree.order[at]
-        c = (balls.sites.centres[ball, 0], balls.sites.centres[ball, 1], balls.sites.centres[ball, 2])
-        if may_pierce(c, balls.radii[ball], cone):
-            to = np.uint64(found)
-            columns[X + to], columns[Y + to], columns[Z + to], columns[RADIUS + to] = c[0], c[1], c[2], balls.radii[ball]
-            room.numbers[found] = ball
-            found += 1
+    low, high = box_of(tree, node)
+    wide = width_in(cone, low, high)
+    first, last = tree.first[node], tree.first[node] + tree.size[node]
+    while first < last:
+        test_leaf(balls, first, cone, wide, room, found)
+        begin = np.uint64(found)
+        for i in range(min(last - first, LANES)):
+            at, to = begin + np.uint64(i), np.uint64(found)
+            columns[X + to], columns[Y + to] = columns[X + at], columns[Y + at]
+            columns[Z + to], columns[RADIUS + to] = columns[Z + at], columns[RADIUS + at]
+            room.numbers[found] = tree.order[first + i]
+            found += 1 if columns[INSIDE + np.uint64(i)] >= 0.0 else 0
+        first += LANES
     return found
 
 
@@ -143,13 +163,13 @@ def list_more(balls: Balls, cone: Cone, room: Room, listed: Listed) -> Listed:
     found, waiting, tree = listed.balls, listed.nodes, balls.tree
     enough = ROOM if balls.any_hit == 1 else found + ROUND
     while waiting > 0 and found < enough:
-        if found > ROOM - LEAF or waiting > NODES - 2:
+        if found > ROOM - BALL_LEAF - LANES or waiting > NODES - 2:
             return Listed(ALONE, 0)
         waiting = pop(room.keys, room.nodes, waiting)
         node = room.nodes[waiting]
         if tree.size[node] == 0:
-            waiting = push_node(balls, node + 1, cone, room, waiting)
-            waiting = push_node(balls, tree.first[node], cone, room, waiting)
+            waiting = push_node(tree, node + 1, cone, room, waiting)
+            waiting = push_node(tree, tree.first[node], cone, room, waiting)
         else:
             found = list_leaf(balls, node, cone, room, found)
     return Listed(found, waiting)
@@ -193,7 +213,7 @@ def nothing_listed(balls: Balls, cone: Cone, rays: int, room: Room, keys: Array)
     """
     if rays < FEW or keys.shape[0] < ROOM + LEAF_ROOM or not is_sound(cone):
         return Listed(ALONE, 0)
-    return Listed(0, push_node(balls, 0, cone, room, 0))
+    return Listed(0, push_node(balls.tree, 0, cone, room, 0))
 
 
 @kernel(STRICT, inline=True)

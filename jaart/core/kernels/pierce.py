@@ -17,6 +17,8 @@ from jaart.core.kernels.vectors import along, dot
 Ints = NDArray[np.int64]
 #: Nothing is left in the heap that counts, or it has no room.
 NOTHING, ROOM = -1, -2
+#: So many balls of a leaf are tested at once.
+LANES = 8
 #: A node adds fewer entries than this to the heap.
 LEAF_ROOM = 64
 
@@ -24,7 +26,8 @@ LEAF_ROOM = 64
 class Balls(NamedTuple):
     """A cloud as rays pierce it.
 
-    sites: the balls; radii: (N,); tree: over the balls; stretches: 1 where a ball is searched from side to side, 0
+    sites: the balls; radii: (N,); tree: over the balls; leaves: (4·(N + LANES),) the parts of their centres and their
+    radii in the order of the leaves, each column with room behind it; stretches: 1 where a ball is searched from side to side, 0
     where a search starts from its promise, which what is kept at its centre makes; any_hit: 1 where the first found
     will do; offset: of the frame that balls are in; blur: rounding of its origin.
     """
@@ -32,6 +35,7 @@ class Balls(NamedTuple):
     sites: Sites
     radii: Array
     tree: Tree
+    leaves: Array
     stretches: int
     any_hit: int
     offset: Vector

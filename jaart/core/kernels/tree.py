@@ -13,8 +13,8 @@ from jaart.core.kernels.records import Array, Vector
 
 Ints = NDArray[np.int64]
 
-#: A node of so many items or fewer is a leaf.
-LEAF = 6
+#: A node of so many items or fewer is a leaf; of balls, which are tested as vectors, there are more.
+LEAF, BALL_LEAF = 6, 12
 #: Levels that a tree may have: it halves, so 2^48 items would fit.
 DEEPEST = 48
 #: By what share of itself a t is moved outwards: it went through four roundings, each of 2^-53 at most.
