@@ -105,8 +105,9 @@ class CloudTracer:
         def ask(sites: Sites, pool: Pool) -> int:
             nonlocal done
             pool.have_heap(HEAP)
-            balls = Balls(sites, self.cloud.radii, self.cloud.tree, self.cloud.leaves, int(self.stretches), int(any_hit),
-                          (x, y, z), blur)
+            cloud = self.cloud
+            balls = Balls(sites, cloud.radii, cloud.tree, cloud.leaves, int(self.stretches), int(any_hit), (x, y, z),
+                          blur)
             done, written = ball_ray.trace_ball_rays(balls, self.plan, origins, directions, pixels, done, out, log,
                                                      room, pool.work, pool.fit, pool.keys, pool.items)
             return int(written)

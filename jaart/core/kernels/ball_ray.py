@@ -29,6 +29,7 @@ from jaart.core.kernels.bundle import (
     next_size,
     nothing_listed,
     push_pierced,
+    unowned_room,
 )
 from jaart.core.kernels.call import evaluate_at, gather_at, search_from
 from jaart.core.kernels.counts import forget_counts, write_counts
@@ -39,12 +40,12 @@ from jaart.core.kernels.leaving import Leave, counting, leave
 from jaart.core.kernels.log import end_log
 from jaart.core.kernels.near import near_in, surfels_near
 from jaart.core.kernels.packet import is_bad
-from jaart.core.kernels.pierce import NOTHING, ROOM, Balls, chord, next_item, push_root
+from jaart.core.kernels.pierce import NOTHING, ROOM, Balls, chord, next_item, push_root, unowned_balls
 from jaart.core.kernels.ray import added, no_hit, ray_of, visiting, write_end
 from jaart.core.kernels.records import Array, Out, Plan, RayEnd, Sites, Start, Vector
 from jaart.core.kernels.stretch import has_hit
 from jaart.core.kernels.tree import Tree
-from jaart.core.kernels.unowned import unowned, unowned_sites
+from jaart.core.kernels.unowned import unowned
 from jaart.core.kernels.vectors import along, dot
 
 Ints = NDArray[np.int64]
@@ -214,22 +215,6 @@ def finished(best: RayEnd, last: RayEnd, visited: int) -> RayEnd:
                   last.used, visited, last.lowered, best.gap, last.rows, NOTHING)
 
 
-@kernel(STRICT)
-def unowned_balls(balls: Balls) -> Balls:
-    """Balls, their arrays without owners."""
-    tree = balls.tree
-    tree = Tree(unowned(tree.low), unowned(tree.high), unowned(tree.first), unowned(tree.size), unowned(tree.order))
-    return Balls(unowned_sites(balls.sites), unowned(balls.radii), tree, unowned(balls.leaves), balls.stretches,
-                 balls.any_hit, balls.offset, balls.blur)
-
-
-@kernel(STRICT)
-def unowned_room(room: Room) -> Room:
-    """Room for a bundle, its arrays without owners."""
-    return Room(unowned(room.columns), unowned(room.numbers), unowned(room.pierced), unowned(room.keys),
-                unowned(room.nodes))
-
-
 @kernel(STRICT, inline=True)
 def trace_listed(balls: Balls, plan: Plan, o: Vector, d: Vector, cone: Cone, room: Room, listed: Listed, rows: Array,
                  work: Array, fit: Array, keys: Array, items: Ints) -> tuple[RayEnd, Listed]:
@@ -251,8 +236,8 @@ def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array,
     origins, directions: (R, 3) in the cloud's own coordinates; pixels: rows to trace, from begin on; the others as of
     `trace_ball_ray`.
     """
-    balls, room, log, scratch, fitted = unowned_balls(balls), unowned_room(room), unowned(rows), unowned(work), unowned(fit)
-    waiting, entries, rays = unowned(keys), unowned(items), unowned(pixels)
+    balls, room, log, scratch = unowned_balls(balls), unowned_room(room), unowned(rows), unowned(work)
+    fitted, waiting, entries, rays = unowned(fit), unowned(keys), unowned(items), unowned(pixels)
     at, size, written = begin, MOST, 0
     while at < rays.shape[0]:
         last = last_of(size, at, rays.shape[0])

@@ -4,8 +4,8 @@ Rays beside one another pierce nearly the same balls. All of them stay within a 
 rays part; a ball that it misses is met by none. Those that are left stand in columns, and each ray tests them as
 vectors. It meets the balls that it would meet alone, number for number.
 
-Most rays end at the first sheet, so balls are listed up to a horizon, nearest nodes first. A ray that gets there without
-an end has more of them listed, and begins anew.
+Most rays end at the first sheet, so balls are listed up to a horizon, nearest nodes first. A ray that gets there
+without an end has more of them listed, and begins anew.
 """
 
 from __future__ import annotations
@@ -21,11 +21,12 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.pierce import LANES, LEAF_ROOM, Balls, push_ball
 from jaart.core.kernels.records import Array, Unsigned, Vector
 from jaart.core.kernels.tree import BALL_LEAF, Tree, span_of
+from jaart.core.kernels.unowned import unowned
 from jaart.core.kernels.vectors import along, dot, length
 
 Ints = NDArray[np.int64]
-#: Rays of a bundle at most: a block of 8 × 8 pixels. So few do not go together.
-MOST, FEW = 64, 4
+#: Rays of a bundle at most: a block of 8 × 8 pixels. Fewer than that do not go together.
+MOST, FEW = 64, 16
 #: Balls that a bundle may list at most; more cost each ray more than the way through the tree. So many at once.
 ROOM, ROUND = 512, 64
 #: Nodes that may wait.
@@ -228,3 +229,10 @@ def next_size(size: int, found: int) -> int:
     if found == ALONE:
         return size // 2 if size >= FEW else FEW
     return min(2 * size, MOST) if 4 * found < ROOM else size
+
+
+@kernel(STRICT)
+def unowned_room(room: Room) -> Room:
+    """Room for a bundle, its arrays without owners."""
+    return Room(unowned(room.columns), unowned(room.numbers), unowned(room.pierced), unowned(room.keys),
+                unowned(room.nodes))

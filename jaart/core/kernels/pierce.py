@@ -12,6 +12,7 @@ from jaart.core.kernels.heap import pop, push
 from jaart.core.kernels.jit import EXACT, STRICT, kernel
 from jaart.core.kernels.records import Array, Sites, Vector
 from jaart.core.kernels.tree import Tree, span
+from jaart.core.kernels.unowned import unowned, unowned_sites
 from jaart.core.kernels.vectors import along, dot
 
 Ints = NDArray[np.int64]
@@ -27,9 +28,9 @@ class Balls(NamedTuple):
     """A cloud as rays pierce it.
 
     sites: the balls; radii: (N,); tree: over the balls; leaves: (4·(N + LANES),) the parts of their centres and their
-    radii in the order of the leaves, each column with room behind it; stretches: 1 where a ball is searched from side to side, 0
-    where a search starts from its promise, which what is kept at its centre makes; any_hit: 1 where the first found
-    will do; offset: of the frame that balls are in; blur: rounding of its origin.
+    radii in the order of the leaves, each column with room behind it; stretches: 1 where a ball is searched from side
+    to side, 0 where a search starts from its promise, which what is kept at its centre makes; any_hit: 1 where the
+    first found will do; offset: of the frame that balls are in; blur: rounding of its origin.
     """
 
     sites: Sites
@@ -105,3 +106,12 @@ def next_item(balls: Balls, o: Vector, d: Vector, inverse: Vector, limit: float,
             return size, items[size]
         size = push_children(balls, -1 - items[size], o, d, inverse, keys, items, size)
     return size, NOTHING
+
+
+@kernel(STRICT)
+def unowned_balls(balls: Balls) -> Balls:
+    """Balls, their arrays without owners."""
+    tree = balls.tree
+    tree = Tree(unowned(tree.low), unowned(tree.high), unowned(tree.first), unowned(tree.size), unowned(tree.order))
+    return Balls(unowned_sites(balls.sites), unowned(balls.radii), tree, unowned(balls.leaves), balls.stretches,
+                 balls.any_hit, balls.offset, balls.blur)
