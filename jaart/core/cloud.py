@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core.kernels.cover import keep
+from jaart.core.kernels.cover import in_question, keep
 from jaart.core.scene import Array, Scene, frozen
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ CORE = 0.5
 
 def bounds(scene: Scene) -> tuple[Array, Array]:
     """Lowest and highest corner (3,) of the box around a cloud's points, in its own coordinates."""
-    return scene.once("bounds", (), lambda: (frozen(_points(scene).min(axis=0)), frozen(_points(scene).max(axis=0))))
+    return scene.once("bounds", (), lambda: _bounds(_points(scene)))
 
 
 def diagonal(scene: Scene) -> float:
@@ -85,6 +85,8 @@ def nearest_others(points: Array, k: int, tree: cKDTree | None = None) -> tuple[
     if k < 1:
         return np.empty((len(points), 0)), np.empty((len(points), 0), np.intp)
     distance, index = (tree or cKDTree(points)).query(points, k + 1, workers=-1)
+    if (index[:, 0] == np.arange(len(points))).all():
+        return distance[:, 1:].copy(), index[:, 1:].copy()
     itself = index == np.arange(len(points))[:, None]
     itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
     return distance[~itself].reshape(-1, k), index[~itself].reshape(-1, k)
@@ -152,12 +154,14 @@ def cover(scene: Scene, ball_k: int) -> NDArray[np.int64]:
     def make() -> NDArray[np.int64]:
         distance, index = nearest(scene, ball_k)
         radii = ball_radii(scene, ball_k)
-        order = _large_first(radii, local_points(scene))
-        place = np.empty(len(order), np.int64)
-        place[order] = np.arange(len(order))
-        kept = np.ones(len(index), dtype=bool)
-        keep(distance[order], place[index[order]], radii[order], CORE, kept)
-        return np.sort(order[kept])
+        asked, kept = np.zeros(len(index), dtype=bool), np.ones(len(index), dtype=bool)
+        in_question(distance, index, radii, CORE, asked)
+        some = np.flatnonzero(asked)
+        order = some[_large_first(radii[some], local_points(scene)[some])]
+        rank = np.empty(len(index), np.int64)
+        rank[order] = np.arange(len(order))
+        keep(distance, index, radii, order, rank, CORE, kept)
+        return np.flatnonzero(kept)
 
     return scene.once("cover", ball_k, make)
 
@@ -170,6 +174,12 @@ def _large_first(radii: Array, points: Array) -> NDArray[np.int64]:
     some = order[tied]
     order[tied] = some[np.lexsort((*points[some].T, -radii[some]))]
     return order
+
+
+def _bounds(points: Array) -> tuple[Array, Array]:
+    """Lowest and highest corner (3,), each column alone: rows of three numbers make no vectors."""
+    return (frozen(np.array([points[:, axis].min() for axis in range(3)])),
+            frozen(np.array([points[:, axis].max() for axis in range(3)])))
 
 
 def _points(scene: Scene) -> Array:
