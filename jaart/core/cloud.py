@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels.cover import in_question, keep
+from jaart.core.nearest import nearest_others
 from jaart.core.scene import Array, Scene, frozen
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.intp]]:
     k: at least 1; clipped to N - 1, so a single point has none.
     """
     def make() -> tuple[Array, NDArray[np.intp]]:
-        return nearest_others(local_points(scene), k, kd_tree(scene))
+        return nearest_others(local_points(scene), k, lambda: kd_tree(scene))
 
     return scene.once("nearest", k, make)
 
@@ -72,24 +73,6 @@ def kd_tree(scene: Scene) -> cKDTree:
     from scipy.spatial import cKDTree
 
     return scene.once("kd_tree", (), lambda: cKDTree(local_points(scene)))
-
-
-def nearest_others(points: Array, k: int, tree: cKDTree | None = None) -> tuple[Array, NDArray[np.intp]]:
-    """Distances (N, k) from each of the points (N, 3) to its k nearest others, and which they are.
-
-    A point that stands in the same place is another one. k is clipped to N - 1. tree: over these points.
-    """
-    from scipy.spatial import cKDTree
-
-    k = min(k, len(points) - 1)
-    if k < 1:
-        return np.empty((len(points), 0)), np.empty((len(points), 0), np.intp)
-    distance, index = (tree or cKDTree(points)).query(points, k + 1, workers=-1)
-    if (index[:, 0] == np.arange(len(points))).all():
-        return distance[:, 1:].copy(), index[:, 1:].copy()
-    itself = index == np.arange(len(points))[:, None]
-    itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
-    return distance[~itself].reshape(-1, k), index[~itself].reshape(-1, k)
 
 
 def spacing(scene: Scene) -> float:

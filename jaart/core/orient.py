@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core.cloud import local_points, nearest_others, offset
+from jaart.core.cloud import local_points, offset
+from jaart.core.nearest import nearest_others
 from jaart.core.scene import Array, Scene, frozen
 from jaart.core.telling import tell
 
