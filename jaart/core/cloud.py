@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels.cover import in_question, keep
-from jaart.core.nearest import nearest_others
+from jaart.core.nearest import nearest_others, tree_over
 from jaart.core.scene import Array, Scene, frozen
 
 if TYPE_CHECKING:
@@ -70,9 +70,7 @@ def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.intp]]:
 
 def kd_tree(scene: Scene) -> cKDTree:
     """A tree over `local_points` that finds nearest ones."""
-    from scipy.spatial import cKDTree
-
-    return scene.once("kd_tree", (), lambda: cKDTree(local_points(scene)))
+    return scene.once("kd_tree", (), lambda: tree_over(local_points(scene)))
 
 
 def spacing(scene: Scene) -> float:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels.nearest import Cells, find_nearest
+from jaart.core.pieces import do_each
 from jaart.core.scene import Array
+from jaart.core.telling import tell
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
@@ -22,8 +22,8 @@ COARSE, A_NEIGHBOUR = 32, 0.5
 MOST_CELLS, MOST_BESIDE = 16, 12.0
 #: Fewer points, or more neighbours, are not worth it.
 LEAST, MOST_NEIGHBOURS = 1000, 32
-#: Points that a thread takes at once.
-_PIECE = 4096
+#: Points whose neighbours a thread finds at a time.
+POINTS_AT_ONCE = 1 << 13
 
 
 def nearest_others(points: Array, k: int, tree: Callable[[], cKDTree] | None = None
@@ -37,24 +37,41 @@ def nearest_others(points: Array, k: int, tree: Callable[[], cKDTree] | None = N
     if k < 1:
         return np.empty((len(points), 0)), np.empty((len(points), 0), np.intp)
     cells = even_cells(points, k) if len(points) >= LEAST and k <= MOST_NEIGHBOURS else None
+    distance, index = np.empty((len(points), k)), np.empty((len(points), k), np.intp)
     if cells is None:
-        return in_tree(_tree(points, tree), points, np.arange(len(points)), k)
-    distance, index = np.empty((len(points), k)), np.empty((len(points), k), np.int64)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        unsure = sum(pool.map(lambda at: find_nearest(cells, at, min(at + _PIECE, len(points)), distance, index),
-                              range(0, len(points), _PIECE)))
-    if unsure:
-        rows = np.flatnonzero(distance[:, 0] < 0)
-        distance[rows], index[rows] = in_tree(_tree(points, tree), points, rows, k)
+        in_tree(_made(points, tree), points, None, distance, index)
+        return distance, index
+
+    def find(at: int) -> None:
+        find_nearest(cells, at, min(at + POINTS_AT_ONCE, len(points)), distance, index)
+
+    do_each(find, range(0, len(points), POINTS_AT_ONCE), progress=tell)
+    unsure = np.flatnonzero(distance[:, 0] < 0)
+    if len(unsure):
+        in_tree(_made(points, tree), points, unsure, distance, index)
     return distance, index
 
 
-def in_tree(tree: cKDTree, points: Array, rows: NDArray[np.intp], k: int) -> tuple[Array, NDArray[np.intp]]:
-    """The same for some rows of the points, by a tree over all."""
-    distance, index = tree.query(points[rows], k + 1, workers=-1)
-    itself = index == rows[:, None]
-    itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
-    return distance[~itself].reshape(-1, k), index[~itself].reshape(-1, k)
+def in_tree(tree: cKDTree, points: Array, rows: NDArray[np.intp] | None, distance: Array,
+            index: NDArray[np.intp]) -> None:
+    """Write the same of some rows of the points, or of all, by a tree over all."""
+    k = distance.shape[1]
+
+    def find(some: NDArray[np.intp]) -> None:
+        away, which = tree.query(points[some], k + 1)
+        itself = which == some[:, None]
+        itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
+        distance[some], index[some] = away[~itself].reshape(-1, k), which[~itself].reshape(-1, k)
+
+    rows = tree.indices if rows is None else rows  # points of a leaf together: they read the same parts of the tree
+    do_each(find, [rows[i:i + POINTS_AT_ONCE] for i in range(0, len(rows), POINTS_AT_ONCE)], progress=tell)
+
+
+def tree_over(points: Array) -> cKDTree:
+    """A tree over points that finds nearest ones."""
+    from scipy.spatial import cKDTree
+
+    return cKDTree(points)
 
 
 def even_cells(points: Array, k: int) -> Cells | None:
@@ -88,7 +105,5 @@ def _keys(points: Array, low: Array, size: Array, edge: float) -> tuple[NDArray[
     return keys, shape
 
 
-def _tree(points: Array, tree: Callable[[], cKDTree] | None) -> cKDTree:
-    from scipy.spatial import cKDTree
-
-    return tree() if tree else cKDTree(points)
+def _made(points: Array, tree: Callable[[], cKDTree] | None) -> cKDTree:
+    return tree() if tree else tree_over(points)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core.cloud import local_points, offset
+from jaart.core.cloud import kd_tree, local_points, offset
 from jaart.core.nearest import nearest_others
 from jaart.core.scene import Array, Scene, frozen
 from jaart.core.telling import tell
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 Ints = NDArray[np.intp]
 Vector = tuple[float, float, float]
@@ -58,22 +62,25 @@ def normals_of(scene: Scene, orient: str | Vector) -> Oriented:
     """
     def make() -> Oriented:
         local = orient if isinstance(orient, str) else tuple((np.asarray(orient) - offset(scene)).tolist())
-        return oriented(local_points(scene), local)
+        return oriented(local_points(scene), local, tree=lambda: kd_tree(scene))
 
     return scene.once("normals", orient, make)
 
 
-def oriented(points: Array, orient: str | Vector = "spanning_tree", k: int = NEIGHBOURS) -> Oriented:
+def oriented(points: Array, orient: str | Vector = "spanning_tree", k: int = NEIGHBOURS,
+             tree: Callable[[], cKDTree] | None = None) -> Oriented:
     """Normals of bare points (N, 3), estimated from k neighbours each and turned to one side.
 
     orient: "spanning_tree" spreads one side over each part of the surface and takes it for the outer one [Hoppe
-    et al. 1992]; a viewpoint (x, y, z) has each normal turned towards it; "none" leaves them as they come.
+    et al. 1992]; a viewpoint (x, y, z) has each normal turned towards it; "none" leaves them as they come; tree: makes
+    one over the points, or has it.
     """
-    index = nearest_others(points, k)[1]
+    index = nearest_others(points, k, tree)[1]
     normal, gap = estimated(points, index)
-    components = parts(index)
+    graph = spanning_tree(normal, index) if orient == "spanning_tree" else _graph(np.ones(index.shape), index)
+    components = parts(graph)
     if orient == "spanning_tree":
-        normal = spread(points, normal, index, components)
+        normal = spread(points, normal, graph, components)
     elif not isinstance(orient, str):
         normal = towards(points, normal, np.array(orient))
     return Oriented(frozen(normal), int(components.max()) + 1, int((gap < SMALLEST_GAP).sum()), agreeing(normal, index))
@@ -105,25 +112,29 @@ def _estimated(points: Array, neighbours: Array) -> tuple[Array, Array]:
     return normal, (values[:, 1] - values[:, 0]) / largest
 
 
-def parts(index: Ints) -> NDArray[np.int32]:
-    """Which part (N,) of the graph of neighbours (N, k) each point belongs to, counted from 0."""
+def parts(graph: Any) -> NDArray[np.int32]:
+    """Which part (N,) of a graph each point belongs to, counted from 0."""
     from scipy.sparse.csgraph import connected_components
 
-    labels: NDArray[np.int32] = connected_components(_graph(np.ones(index.shape), index), directed=False)[1]
+    labels: NDArray[np.int32] = connected_components(graph, directed=False)[1]
     return labels
 
 
-def spread(points: Array, normal: Array, index: Ints, part: NDArray[np.int32]) -> Array:
-    """Normals (N, 3) turned to the outside of each part [Hoppe et al. 1992].
-
-    A minimum spanning tree of the neighbour graph, its edges weighted by 1 - |<n_i, n_j>|, is walked from one
-    point of each part; a normal is turned when it points away from the one before it. Then the part is turned as
-    a whole so that the normals at its extreme points along x, y, z point outwards.
-    """
+def spanning_tree(normal: Array, index: Ints) -> Any:
+    """A minimum spanning tree of each part of the graph of neighbours (N, k), edges weighted by 1 - |<n_i, n_j>|."""
     from scipy.sparse.csgraph import minimum_spanning_tree
 
     weight = 1 - np.abs(_cosines(normal, index))
-    tree = minimum_spanning_tree(_graph(np.maximum(weight, 0) + LIGHTEST, index))
+    return minimum_spanning_tree(_graph(np.maximum(weight, 0) + LIGHTEST, index))
+
+
+def spread(points: Array, normal: Array, tree: Any, part: NDArray[np.int32]) -> Array:
+    """Normals (N, 3) turned to the outside of each part [Hoppe et al. 1992].
+
+    The spanning tree is walked from one point of each part; a normal is turned when it points away from the one
+    before it. Then the part is turned as a whole so that the normals at its extreme points along x, y, z point
+    outwards.
+    """
     before = _before(tree, _first_of_each(part))
     sign = np.where((normal * normal[before]).sum(axis=1) < 0, -1.0, 1.0)
     while (before != before[before]).any():  # each turn halves the way to the first point

@@ -34,7 +34,8 @@ UNEVEN = {
 def test_neighbours_are_those_of_a_tree(name: str, k: int) -> None:
     points = (EVEN | UNEVEN)[name]
     distance, index = nearest_others(points, k)
-    expected, _ = in_tree(cKDTree(points), points, np.arange(len(points)), k)
+    expected, which = np.empty((len(points), k)), np.empty((len(points), k), np.intp)
+    in_tree(cKDTree(points), points, None, expected, which)
     assert np.array_equal(distance, expected)
     assert (index != np.arange(len(points))[:, None]).all()
     assert all(len(set(row)) == k for row in index.tolist())

@@ -59,13 +59,13 @@ def around(cells: Cells, axis: int, x: float) -> tuple[int, int, float]:
 
 
 @kernel(STRICT, entry=True)
-def find_nearest(cells: Cells, begin: int, end: int, distance: Array, index: Ints) -> int:
+def find_nearest(cells: Cells, begin: int, end: int, distance: Array, index: Ints) -> None:
     """Write the nearest others of some of the sorted points into their rows, those that are certain.
 
     begin, end: which points; distance, index: (N, k) rows by the points' numbers; a row that is not certain begins
-    with -1. Returns how many such rows there are.
+    with -1.
     """
-    unsure, k = 0, index.shape[1]
+    k = index.shape[1]
     for own in range(begin, end):
         row, x = cells.order[own], (cells.points[own, 0], cells.points[own, 1], cells.points[own, 2])
         for a in range(k):
@@ -86,5 +86,3 @@ def find_nearest(cells: Cells, begin: int, end: int, distance: Array, index: Int
                 distance[row, a] = sqrt(distance[row, a])
         else:
             distance[row, 0] = -1.0
-            unsure += 1
-    return unsure
