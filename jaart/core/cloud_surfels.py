@@ -13,6 +13,7 @@ from jaart.core.balls import Cloud
 from jaart.core.chosen import Chosen
 from jaart.core.kernels.gather import Grid
 from jaart.core.meaning import estimates_normals
+from jaart.core.nearest import nearest_others
 from jaart.core.scene import Array, Scene, frozen
 from jaart.core.settings import Settings
 from jaart.core.tree import ball_tree
@@ -83,7 +84,7 @@ def _discs(scene: Scene, points: Array, normals: Array, h: float) -> Cloud:
 
 def _reach(scene: Scene, k: int, kept: NDArray[np.int64], radii: Array) -> Array:
     """How far the k nearest of any point in a ball may be from its centre: no more than its own k-th and 2ρ."""
-    distance, _ = cloud.nearest_others(cloud.local_points(scene), max(k - 1, 1), cloud.kd_tree(scene))
+    distance, _ = nearest_others(cloud.local_points(scene), max(k - 1, 1), lambda: cloud.kd_tree(scene))
     farthest: Array = (distance[kept, -1] if distance.shape[1] else np.zeros(len(kept))) + 2 * radii
     return farthest * (1 + 1e-12)
 
