@@ -3,6 +3,15 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+
+#: Items that are worked on at a time where each takes much more room than what is kept of it.
+PIECE = 1 << 13
+
+
+def pieces(count: int, size: int = PIECE) -> Iterator[slice]:
+    """Slices of so many items, one after another: what each needs meanwhile is not needed for all at once."""
+    return (slice(begin, min(begin + size, count)) for begin in range(0, count, size))
 
 
 def limit() -> int:
