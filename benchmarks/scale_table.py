@@ -22,11 +22,11 @@ class Row:
     """What was measured of one size; None where it was not, and note says why.
 
     kind, size: "lattice" of size^3 cells or "cloud" of size points; data_bytes: of the levels or points themselves,
-    beyond which all other bytes are; items: interface cells or points; prep_s: one preparation, kernels
-    loaded before; peak_bytes: that the process grew by at most meanwhile; kept_bytes: that it is larger by after it;
-    array_bytes: of the arrays that the scene keeps then, the named ones in arrays, bytes an item; first_s: preparation
-    and the first picture; ray_us: a ray with everything kept, median of pictures; evaluations: of a hit in the first
-    picture; touched, touched_bytes: cells or balls with neighbours written down, and these neighbours.
+    beyond which all other bytes are; items: interface cells or points; prep_s: one preparation with the choice of
+    settings, kernels loaded before; peak_bytes: that the process grew by at most meanwhile; kept_bytes: that it is
+    larger by after it; array_bytes: of the arrays that the scene keeps then, the named ones in arrays, bytes an item;
+    first_s: preparation and the first picture; ray_us: a ray with everything kept, median of pictures; evaluations: of
+    a hit in the first picture; touched, touched_bytes: cells or balls with neighbours written down, and these.
     """
 
     kind: str

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels.cover import keep
+from jaart.core.memory import pieces
 from jaart.core.scene import Array, Scene, frozen
 
 if TYPE_CHECKING:
@@ -20,6 +21,8 @@ GRID = 1 / 8
 DENSITY_K, OUTLIER = 6, 10.0
 #: The proposed h in lengths of a point's own square.
 AUTO_H = 1.2
+#: Points whose neighbours are looked for at a time.
+ASKED = 1 << 16
 #: Share of a ball's radius that must lie in another ball before it is left out.
 CORE = 0.5
 
@@ -53,15 +56,16 @@ def offset(scene: Scene) -> Array:
 
 def local_points(scene: Scene) -> Array:
     """A cloud's points (N, 3) relative to `offset`: what kernels see. Rays have the same offset subtracted."""
-    return scene.once("local_points", (), lambda: frozen(_points(scene) - offset(scene)))
+    return scene.once("local_points", (), lambda: frozen(_points(scene) - offset(scene)) if offset(scene).any()
+                      else _points(scene))
 
 
-def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.intp]]:
+def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.int32]]:
     """Distances (N, k) from each point to its k nearest others, rising, and which they are (N, k).
 
     k: at least 1; clipped to N - 1, so a single point has none.
     """
-    def make() -> tuple[Array, NDArray[np.intp]]:
+    def make() -> tuple[Array, NDArray[np.int32]]:
         return nearest_others(local_points(scene), k, kd_tree(scene))
 
     return scene.once("nearest", k, make)
@@ -74,20 +78,29 @@ def kd_tree(scene: Scene) -> cKDTree:
     return scene.once("kd_tree", (), lambda: cKDTree(local_points(scene)))
 
 
-def nearest_others(points: Array, k: int, tree: cKDTree | None = None) -> tuple[Array, NDArray[np.intp]]:
+def nearest_others(points: Array, k: int, tree: cKDTree | None = None) -> tuple[Array, NDArray[np.int32]]:
     """Distances (N, k) from each of the points (N, 3) to its k nearest others, and which they are.
 
     A point that stands in the same place is another one. k is clipped to N - 1. tree: over these points.
     """
     from scipy.spatial import cKDTree
 
-    k = min(k, len(points) - 1)
-    if k < 1:
-        return np.empty((len(points), 0)), np.empty((len(points), 0), np.intp)
-    distance, index = (tree or cKDTree(points)).query(points, k + 1, workers=-1)
-    itself = index == np.arange(len(points))[:, None]
-    itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
-    return distance[~itself].reshape(-1, k), index[~itself].reshape(-1, k)
+    k, tree = max(min(k, len(points) - 1), 0), tree or cKDTree(points)
+    distances, others = np.empty((len(points), k)), np.empty((len(points), k), np.int32)
+    for piece in pieces(len(points) if k else 0, ASKED):
+        distance, index = tree.query(points[piece], k + 1, workers=-1)
+        itself = index == np.arange(piece.start, piece.stop)[:, None]
+        itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
+        distances[piece], others[piece] = distance[~itself].reshape(-1, k), index[~itself].reshape(-1, k)
+    return distances, others
+
+
+def kth_distance(scene: Scene, k: int, some: NDArray[np.int64]) -> Array:
+    """Distance (M,) from some points to the k-th nearest other of each; 0 where there is no other."""
+    k, found, points = min(k, len(_points(scene)) - 1), np.zeros(len(some)), local_points(scene)
+    for piece in pieces(len(some) if k > 0 else 0, ASKED):
+        found[piece] = kd_tree(scene).query(points[some[piece]], [k + 1], workers=-1)[0][:, 0]
+    return found
 
 
 def spacing(scene: Scene) -> float:
@@ -95,12 +108,7 @@ def spacing(scene: Scene) -> float:
 
     0 when there is no point elsewhere.
     """
-    def make() -> float:
-        distance = nearest(scene, DENSITY_K)[0][:, :1]  # the neighbours that balls are made of by default
-        apart = distance[distance > 0]
-        return float(apart.mean()) if len(apart) else 0.0
-
-    return scene.once("spacing", (), make)
+    return _density(scene)[0]
 
 
 def square(scene: Scene) -> float:
@@ -110,15 +118,20 @@ def square(scene: Scene) -> float:
     is the spacing of a regular cloud, but of an irregular or noisy one about twice `spacing`, which pairs of
     close points make small. 0 when there is no other point.
     """
-    def make() -> float:
-        distance = nearest(scene, DENSITY_K)[0]
-        if not distance.shape[1]:
-            return 0.0
-        last, k = distance[:, -1], distance.shape[1]
-        inner = last[last <= OUTLIER * np.median(last)]
-        return float(inner.mean()) * math.sqrt(math.pi / k)
+    return _density(scene)[1]
 
-    return scene.once("square", (), make)
+
+def _density(scene: Scene) -> tuple[float, float]:
+    """`spacing` and `square`, of the neighbours that balls are made of by default."""
+    def make() -> tuple[float, float]:
+        distance = nearest(scene, DENSITY_K)[0]
+        if not (k := distance.shape[1]):
+            return 0.0, 0.0
+        first, last = distance[:, :1], distance[:, -1]
+        apart, inner = first[first > 0], last[last <= OUTLIER * np.median(last)]
+        return (float(apart.mean()) if len(apart) else 0.0), float(inner.mean()) * math.sqrt(math.pi / k)
+
+    return scene.once("density", (), make)
 
 
 def auto_h(scene: Scene) -> float:
@@ -150,14 +163,17 @@ def cover(scene: Scene, ball_k: int) -> NDArray[np.int64]:
     that the points sample it loses next to nothing.
     """
     def make() -> NDArray[np.int64]:
+        radii = np.array(ball_radii(scene, ball_k))
         distance, index = nearest(scene, ball_k)
-        radii = ball_radii(scene, ball_k)
         order = _large_first(radii, local_points(scene))
-        place = np.empty(len(order), np.int64)
+        place = np.empty(len(order), np.int32)
         place[order] = np.arange(len(order))
         kept = np.ones(len(index), dtype=bool)
-        keep(distance[order], place[index[order]], radii[order], CORE, kept)
-        return np.sort(order[kept])
+        keep(distance, index, radii, order, place, CORE, kept)
+        if ball_k == DENSITY_K:
+            _density(scene)
+        scene.forget("nearest")  # all that is asked of it is known
+        return np.flatnonzero(kept)
 
     return scene.once("cover", ball_k, make)
 

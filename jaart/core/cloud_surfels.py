@@ -13,7 +13,8 @@ from jaart.core.balls import Cloud
 from jaart.core.chosen import Chosen
 from jaart.core.kernels.gather import Grid
 from jaart.core.meaning import estimates_normals
-from jaart.core.scene import Array, Scene, frozen
+from jaart.core.memory import pieces
+from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
 from jaart.core.tree import ball_tree
 
@@ -43,7 +44,7 @@ def points_of(scene: Scene, settings: Settings, values: Chosen) -> Points:
     if scene.normals is not None:
         return Points(points, scene.normals)
     if not estimates_normals(scene, settings, values):
-        return Points(points, scene.once("no_normals", (), lambda: frozen(np.zeros(points.shape))))
+        return Points(points, np.broadcast_to(np.zeros(3), points.shape))
     made = orient.normals_of(scene, settings.orient)
     return Points(points, made.normal, made.notes)
 
@@ -60,7 +61,7 @@ def cloud_of(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
     if values.method == "cylinder":
         return _discs(scene, points, normals, values.h)
     kept = cloud.cover(scene, settings.ball_k)
-    centres, radii = np.array(points[kept]), np.array(cloud.ball_radii(scene, settings.ball_k)[kept])
+    centres, radii = points[kept], cloud.ball_radii(scene, settings.ball_k)[kept]
     if alone(scene):  # nothing but h says how large a single surfel is
         radii[:] = values.h
     reach = radii + values.radius if values.neighbourhood == "ball" else _reach(scene, settings.k, kept, radii)
@@ -83,9 +84,7 @@ def _discs(scene: Scene, points: Array, normals: Array, h: float) -> Cloud:
 
 def _reach(scene: Scene, k: int, kept: NDArray[np.int64], radii: Array) -> Array:
     """How far the k nearest of any point in a ball may be from its centre: no more than its own k-th and 2ρ."""
-    distance, _ = cloud.nearest_others(cloud.local_points(scene), max(k - 1, 1), cloud.kd_tree(scene))
-    farthest: Array = (distance[kept, -1] if distance.shape[1] else np.zeros(len(kept))) + 2 * radii
-    return farthest * (1 + 1e-12)
+    return (cloud.kth_distance(scene, max(k - 1, 1), kept) + 2 * radii) * (1 + 1e-12)
 
 
 def _grid(points: Array, normals: Array, edge: float) -> Grid:
@@ -93,8 +92,10 @@ def _grid(points: Array, normals: Array, edge: float) -> Grid:
     low, size = points.min(axis=0), np.ptp(points, axis=0)
     edge = max(edge, float(size.max()) / MOST_CELLS) or 1.0
     shape = (size / edge).astype(np.int64) + 1
-    cell = np.minimum(((points - low) / edge).astype(np.int64), shape - 1)
-    keys = (cell[:, 0] * shape[1] + cell[:, 1]) * shape[2] + cell[:, 2]
-    order = np.argsort(keys, kind="stable")
-    return Grid(np.array(low), edge, shape, keys[order], points[order], normals[order] if len(normals) else normals,
-                order.astype(np.int32))
+    keys = np.empty(len(points), np.int64)
+    for piece in pieces(len(points)):
+        cell = np.minimum(((points[piece] - low) / edge).astype(np.int64), shape - 1)
+        keys[piece] = (cell[:, 0] * shape[1] + cell[:, 1]) * shape[2] + cell[:, 2]
+    order = np.argsort(keys, kind="stable").astype(np.int32)
+    keys = keys[order]
+    return Grid(np.array(low), edge, shape, keys, points[order], normals[order] if len(normals) else normals, order)

@@ -12,7 +12,7 @@ from jaart.core.cloud import local_points, nearest_others, offset
 from jaart.core.scene import Array, Scene, frozen
 from jaart.core.telling import tell
 
-Ints = NDArray[np.intp]
+Ints = NDArray[np.integer]
 Vector = tuple[float, float, float]
 
 #: Neighbours that a normal is estimated from, and along which orientation spreads.

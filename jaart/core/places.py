@@ -95,12 +95,12 @@ class Places:
 
     def __init__(self, shape: Cell, centres: Array, slots: Ints, gatherer: Any, source: list[int], parts: int,
                  kept: int, alive: tuple[Any, ...], what: str) -> None:
-        self._numbers, self._alive, self._what = np.zeros(blocks.POOL_SIZE, np.int64), alive, what
-        self._chunks: list[Array] = [np.zeros(_EMPTY_WORDS)]
+        self._numbers, self._what, self.alive = np.zeros(blocks.POOL_SIZE, np.int64), what, alive
+        self.chunks: list[Array] = [np.zeros(_EMPTY_WORDS)]
         self._pools: list[Pool] = []
         self._free: list[Pool] = []
         self._lock = Lock()
-        first = {blocks.GATHERER: address_of(gatherer, call.GATHER), blocks.EMPTY: address(self._chunks[0]),
+        first = {blocks.GATHERER: address_of(gatherer, call.GATHER), blocks.EMPTY: address(self.chunks[0]),
                  blocks.ROOM: np.iinfo(np.int64).max, blocks.PARTS: parts, blocks.KEPT: kept}
         for word, value in first.items():
             self._numbers[word] = value
@@ -135,8 +135,8 @@ class Places:
         """Address and bytes of one more chunk, which has room for so many. Raises SettingsError where memory ends."""
         made = np.empty(-(-max(need, CHUNK) // 8))
         with self._lock:
-            check(sum(one.nbytes for one in (*self._chunks, made)), self._what)
-            self._chunks.append(made)
+            check(sum(one.nbytes for one in (*self.chunks, made)), self._what)
+            self.chunks.append(made)
         return address(made), made.nbytes
 
     def count(self, word: int) -> int:
@@ -146,8 +146,8 @@ class Places:
     @property
     def kept(self) -> Kept:
         """How much is kept so far; exact while no ray is traced."""
-        table = int(self.slots.nbytes) + sum(int(one.nbytes) for one in self._alive)
-        return Kept(self.count(blocks.GATHERED), self.count(blocks.FITTED), len(self._chunks) - 1,
+        table = int(self.slots.nbytes) + sum(int(one.nbytes) for one in self.alive)
+        return Kept(self.count(blocks.GATHERED), self.count(blocks.FITTED), len(self.chunks) - 1,
                     self.count(blocks.BYTES), table)
 
 

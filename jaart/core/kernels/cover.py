@@ -12,15 +12,18 @@ Ints = NDArray[np.int64]
 
 
 @kernel(STRICT, entry=True)
-def keep(distance: Array, index: Ints, radii: Array, share: float, kept: NDArray[np.bool_]) -> None:
+def keep(distance: Array, index: NDArray[np.int32], radii: Array, order: Ints, place: NDArray[np.int32], share: float,
+         kept: NDArray[np.bool_]) -> None:
     """Mark the balls that are kept: one that is kept drops later ones whose core it holds.
 
     A core is the ball of `share` times the radius. distance, index: (N, k) nearest other centres of each ball,
-    rising; radii (N,), at most the distance to the last of them; kept (N,): all true.
+    rising; radii (N,), at most the distance to the last of them; order (N,): which ball is first, and so on; place
+    (N,): where in it each ball is; kept (N,): all true.
     """
-    for i in range(index.shape[0]):
+    for at in range(order.shape[0]):
+        i = order[at]
         if kept[i]:
-            for at in range(index.shape[1]):
-                j = index[i, at]
-                if j > i and distance[i, at] + share * radii[j] <= radii[i]:
+            for near in range(index.shape[1]):
+                j = index[i, near]
+                if place[j] > at and distance[i, near] + share * radii[j] <= radii[i]:
                     kept[j] = False
