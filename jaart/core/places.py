@@ -229,7 +229,7 @@ def listed(shape: Cell, centres: Array, first: Ints, ids: NDArray[np.int32], col
 def _bricked(shape: Cell, at: Ints, sizes: Ints) -> Ints:
     """Slots of a lattice whose cells' blocks begin at these addresses, cells in C order."""
     some = np.argwhere(sizes.reshape(shape) > 0)
-    slots = brick_slots(shape, bricks_of(shape, some))
+    slots = brick_slots(bricks_of(shape, some))
     everywhere = np.indices(shape).reshape(3, -1).T
     number = slot_numbers(shape, slots, everywhere)
     slots[number[number >= 0]] = at[number >= 0]

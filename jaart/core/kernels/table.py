@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core.kernels.empty_space import away
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.records import Array
+from jaart.core.kernels.records import Array, Empty
 
 Ints = NDArray[np.int32]
 Distances = NDArray[np.uint8]
@@ -24,11 +25,11 @@ def near_box(cell: int, offset: float, radius: float, n: int) -> tuple[int, int]
 
 
 @kernel(STRICT, entry=True)
-def widest(cells: Ints, offsets: Array, radius: float, empty: NDArray[np.uint8], most: int) -> int:
+def widest(cells: Ints, offsets: Array, radius: float, empty: Empty, most: int) -> int:
     """The most cells that lie between one with a surfel within a radius of its centre and the nearest with one in it.
 
-    cells, offsets: (N, 3) cell of each surfel, its position relative to that cell's centre; empty: of the lattice, as
-    `fill_empty` leaves it; most: what no surfel can exceed, where the search ends.
+    cells, offsets: (N, 3) cell of each surfel, its position relative to that cell's centre; empty: of the lattice, told
+    cell by cell up to most, which no surfel can exceed; there the search ends.
     """
     found = 0
     for s in range(cells.shape[0]):
@@ -41,8 +42,8 @@ def widest(cells: Ints, offsets: Array, radius: float, empty: NDArray[np.uint8],
                 y = (cells[s, 1] - j) + offsets[s, 1]
                 for k in range(k0, k1):
                     z = (cells[s, 2] - k) + offsets[s, 2]
-                    if int(empty[i, j, k]) > found and x * x + y * y + z * z <= radius * radius:
-                        found = int(empty[i, j, k])
+                    if x * x + y * y + z * z <= radius * radius:
+                        found = max(found, away(empty, (i, j, k)))
         if found >= most:
             break
     return found
@@ -97,3 +98,48 @@ def fill_empty(empty: Distances) -> None:
     for i in range(nx - 1, -1, -1):
         for j in range(ny - 1, -1, -1):
             sweep(empty, row, i, j, _BEHIND)
+
+
+@kernel(STRICT, inline=True)
+def least_in(window: Distances, first: int, end: int, j: int, k: int) -> int:
+    """The least distance of a brick's cells, which begins in cell (first, j, k) and ends before plane `end`."""
+    least = _FARTHEST
+    for x in range(first, min(first + 4, end)):
+        for y in range(j, min(j + 4, window.shape[1])):
+            for z in range(k, min(k + 4, window.shape[2])):
+                least = min(least, int(window[x, y, z]))
+    return least
+
+
+@kernel(STRICT, inline=True)
+def copy_brick(window: Distances, first: int, end: int, j: int, k: int, near: Distances, at: int) -> None:
+    """Write down a brick's distances; cells beyond the lattice are far."""
+    for x in range(4):
+        for y in range(4):
+            for z in range(4):
+                held = first + x < end and j + y < window.shape[1] and k + z < window.shape[2]
+                near[at + 16 * x + 4 * y + z] = window[first + x, j + y, k + z] if held else _FARTHEST
+
+
+@kernel(STRICT, entry=True)
+def pack(window: Distances, first: int, end: int, most: int, known: int, apart: Distances, bricks: Ints,
+         near: Distances, before: int) -> int:
+    """Write down the bricks of the planes first … end of a window of distances; returns how many cell by cell.
+
+    Those are the ones that hold a distance of `most` or less. known: distances beyond it are but known to be greater;
+    apart: (b, c, d) of the planes' bricks, how many bricks the nearest with a surfel is away; bricks: (b·c·d,) of
+    Empty; near: room; before: how many were written cell by cell before these.
+    """
+    held, at = 0, 0
+    for a in range(apart.shape[0]):
+        for b in range(apart.shape[1]):
+            for c in range(apart.shape[2]):
+                least = least_in(window, first + 4 * a, end, 4 * b, 4 * c)
+                if least <= most:
+                    copy_brick(window, first + 4 * a, end, 4 * b, 4 * c, near, 64 * held)
+                    bricks[at] = 64 * (before + held)
+                    held += 1
+                else:
+                    bricks[at] = -1 - (least if least <= known else max(known + 1, 4 * int(apart[a, b, c]) - 3))
+                at += 1
+    return held
