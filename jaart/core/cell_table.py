@@ -89,7 +89,7 @@ def _check(found: Surfels, reach: Callable[[Array], float], what: str) -> None:
         distance = np.empty(len(found))
         for piece in pieces(len(found)):
             apart = (found.cells[piece] - found.cells[one]) + (found.offset[piece] - found.offset[one])
-            distance[piece] = np.sqrt((apart * apart).sum(axis=1))
+            distance[piece] = np.sqrt(np.einsum("ij,ij->i", apart, apart))
         near.append(int((distance <= reach(distance)).sum()))
     check(sum(near) / max(len(near), 1) * min(len(found), CELLS_ASKED) * (6 * 8 + 4), what)
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 
 #: Items that are worked on at a time where each takes much more room than what is kept of it.
-PIECE = 1 << 13
+PIECE = 1 << 12
 
 
 def pieces(count: int, size: int = PIECE) -> Iterator[slice]:

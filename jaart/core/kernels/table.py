@@ -16,6 +16,7 @@ Ints = NDArray[np.int32]
 Distances = NDArray[np.uint8]
 _BEFORE: Any = np.int64(-1)
 _BEHIND: Any = np.int64(1)
+_ONE, _TWO = np.uint64(1), np.uint64(2)
 
 
 @kernel(STRICT)
@@ -54,33 +55,41 @@ _FARTHEST = 255
 
 
 @kernel(STRICT)
-def carry(empty: Distances, row: Distances, i: int, j: int) -> None:
-    """Lessen the distances of a row along z to one more than those of its neighbours in row (i, j), if there is one.
-
-    row: (nz + 2,), with an end on each side that is no cell.
-    """
+def lessen(beside: Distances, empty: Distances, i: int, j: int) -> None:
+    """Lessen the distances of a row along z to those of row (i, j), if there is one; beside: (nz + 2,)."""
     if not (0 <= i < empty.shape[0] and 0 <= j < empty.shape[1]):
         return
-    other, last = empty[i, j], empty.shape[2] - 1
-    for k in range(last + 1):
-        nearest = min(min(other[max(k - 1, 0)], other[k]), other[min(k + 1, last)])
-        row[k + 1] = min(int(row[k + 1]), int(nearest) + 1)
+    other = empty[i, j]
+    for k in range(np.uint64(other.shape[0])):
+        beside[k + _ONE] = min(beside[k + _ONE], other[k])
 
 
 @kernel(STRICT)
-def sweep(empty: Distances, row: Distances, i: int, j: int, way: int) -> None:
-    """Lessen the distances of a row by those of the rows, and then the cells, before it; way: -1 or 1 to those."""
-    n = empty.shape[2]
-    for k in range(n):
-        row[k + 1] = empty[i, j, k]
-    for beside in range(-1, 2):
-        carry(empty, row, i + way, j + beside)
-    carry(empty, row, i, j + way)
+def carry(own: Distances, beside: Distances) -> None:
+    """Lessen the distances of a row to one more than the least of those beside it."""
+    for k in range(np.uint64(own.shape[0])):
+        least = min(min(beside[k], beside[k + _ONE]), beside[k + _TWO])
+        own[k] = min(own[k], np.uint8(least + (least < _FARTHEST)))
+
+
+@kernel(STRICT)
+def sweep(empty: Distances, beside: Distances, i: int, j: int, way: int) -> None:
+    """Lessen the distances of a row by those of the rows, and then the cells, before it; way: -1 or 1 to those.
+
+    beside: (nz + 2,) scratch.
+    """
+    own, n = empty[i, j], empty.shape[2]
+    for k in range(np.uint64(n + 2)):
+        beside[k] = _FARTHEST
+    for aside in range(-1, 2):
+        lessen(beside, empty, i + way, j + aside)
+    lessen(beside, empty, i, j + way)
+    carry(own, beside)
+    last = _FARTHEST
     for step in range(n):
-        k = step + 1 if way < 0 else n - step
-        row[k] = min(int(row[k]), int(row[k + way]) + 1)
-    for k in range(n):
-        empty[i, j, k] = row[k + 1]
+        k = step if way < 0 else n - 1 - step
+        last = min(int(own[k]), last + 1)
+        own[k] = last
 
 
 @kernel(STRICT, entry=True, allocates=True)
@@ -91,7 +100,7 @@ def fill_empty(empty: Distances) -> None:
     enough for this distance [Rosenfeld & Pfaltz 1966].
     """
     nx, ny, nz = empty.shape
-    row = np.full(nz + 2, _FARTHEST, np.uint8)
+    row = np.empty(nz + 2, np.uint8)
     for i in range(nx):
         for j in range(ny):
             sweep(empty, row, i, j, _BEFORE)
