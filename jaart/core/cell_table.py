@@ -15,8 +15,8 @@ from jaart.core.kernels import table
 from jaart.core.kernels.cell_gather import gather_cell
 from jaart.core.kernels.nearest_gather import gather_nearest
 from jaart.core.kernels.records import Cell, Cells, Empty, Sites
-from jaart.core.memory import pieces
-from jaart.core.places import Ints, Places, address, check
+from jaart.core.memory import COUNTED, check_near, pieces
+from jaart.core.places import Ints, Places, address
 from jaart.core.scene import Array
 from jaart.core.surfels import Surfels
 
@@ -24,8 +24,6 @@ from jaart.core.surfels import Surfels
 KNN_HALO = 2
 #: Distances from surfels are told cell by cell up to this at least: with fewer rays would visit more cells.
 SKIPPED = 12
-#: A picture asks for about one cell a pixel; the surfels near so many are counted before it begins.
-CELLS_ASKED, CELLS_COUNTED = 1 << 18, 16
 
 
 def cell_table(found: Surfels, shape: Cell, values: Chosen, k: int) -> Cells:
@@ -85,13 +83,13 @@ def _check(found: Surfels, reach: Callable[[Array], float], what: str) -> None:
     their distances from it.
     """
     near = []
-    for one in range(0, len(found), max(len(found) // CELLS_COUNTED, 1)):
+    for one in range(0, len(found), max(len(found) // COUNTED, 1)):
         distance = np.empty(len(found))
         for piece in pieces(len(found)):
             apart = (found.cells[piece] - found.cells[one]) + (found.offset[piece] - found.offset[one])
             distance[piece] = np.sqrt(np.einsum("ij,ij->i", apart, apart))
         near.append(int((distance <= reach(distance)).sum()))
-    check(sum(near) / max(len(near), 1) * min(len(found), CELLS_ASKED) * (6 * 8 + 4), what)
+    check_near(near, len(found), 6, what)
 
 
 def _rows(found: Surfels, shape: Cell) -> tuple[NDArray[np.int32], Ints]:

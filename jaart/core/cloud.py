@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels.cover import keep
-from jaart.core.memory import pieces
+from jaart.core.memory import ITEM, check, pieces
 from jaart.core.scene import Array, Scene, frozen
 
 if TYPE_CHECKING:
@@ -56,8 +56,12 @@ def offset(scene: Scene) -> Array:
 
 def local_points(scene: Scene) -> Array:
     """A cloud's points (N, 3) relative to `offset`: what kernels see. Rays have the same offset subtracted."""
-    return scene.once("local_points", (), lambda: frozen(_points(scene) - offset(scene)) if offset(scene).any()
-                      else _points(scene))
+    def make() -> Array:
+        points = _points(scene)
+        check(ITEM * len(points), f"a cloud of {len(points)} points")
+        return frozen(points - offset(scene)) if offset(scene).any() else points
+
+    return scene.once("local_points", (), make)
 
 
 def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.int32]]:

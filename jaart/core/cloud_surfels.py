@@ -13,7 +13,7 @@ from jaart.core.balls import Cloud
 from jaart.core.chosen import Chosen
 from jaart.core.kernels.gather import Grid
 from jaart.core.meaning import estimates_normals
-from jaart.core.memory import pieces
+from jaart.core.memory import COUNTED, check_near, pieces
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
 from jaart.core.tree import ball_tree
@@ -65,8 +65,17 @@ def cloud_of(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
     if alone(scene):  # nothing but h says how large a single surfel is
         radii[:] = values.h
     reach = radii + values.radius if values.neighbourhood == "ball" else _reach(scene, settings.k, kept, radii)
+    what = f"k = {settings.k}" if math.isinf(values.radius) else f"radius = {values.radius:g}"
+    _check(scene, centres, reach, len(normals) > 0, what)
     return Cloud(_grid(points, normals, float(np.median(reach))), centres, radii, reach,
                  ball_tree(centres, radii), cloud.offset(scene))
+
+
+def _check(scene: Scene, centres: Array, reach: Array, normals: bool, what: str) -> None:
+    """Raise SettingsError where the points near the balls that a picture asks for would not fit into memory."""
+    some = slice(None, None, max(len(centres) // COUNTED, 1))
+    near = cloud.kd_tree(scene).query_ball_point(centres[some], reach[some], return_length=True).tolist()
+    check_near(near, len(centres), 6 if normals else 3, what)
 
 
 def alone(scene: Scene) -> bool:
@@ -78,6 +87,7 @@ def _discs(scene: Scene, points: Array, normals: Array, h: float) -> Cloud:
     """A ball of radius h around each point, that of its disc: the cylinder about a hit reaches √2 h farther."""
     radii = np.full(len(points), h)
     reach = radii * (1 + math.sqrt(2)) * (1 + 1e-12)
+    _check(scene, points, reach, True, f"h = {h:g}")
     return Cloud(_grid(points, normals, float(reach[0])), np.array(points), radii, reach, ball_tree(points, radii),
                  cloud.offset(scene))
 

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+
+from jaart.core.errors import SettingsError
 
 #: Items that are worked on at a time where each takes much more room than what is kept of it.
 PIECE = 1 << 12
+#: Bytes that a surfel or a point of a cloud takes while rays are made ready, at most.
+ITEM = 300
+#: A picture asks for about one place a pixel; what is near so many of them is counted before it begins.
+ASKED, COUNTED = 1 << 18, 16
 
 
 def pieces(count: int, size: int = PIECE) -> Iterator[slice]:
@@ -29,3 +35,17 @@ def words(size: float) -> str:
             break
         size /= 1024
     return f"{size:.3g} {unit}"
+
+
+def check(needed: float, what: str) -> None:
+    """Raise SettingsError where something needs more bytes than it may take."""
+    if needed > limit():
+        raise SettingsError(f"{what}: needs {words(needed)} of memory, more than the {words(limit())} it may take")
+
+
+def check_near(sizes: Sequence[int], places: int, parts: int, what: str) -> None:
+    """Raise SettingsError where what is near the places that a picture asks for would not fit.
+
+    sizes: how many surfels are near some places; places: how many there are; parts: numbers kept of each surfel.
+    """
+    check(sum(sizes) / max(len(sizes), 1) * min(places, ASKED) * (8 * parts + 4), what)

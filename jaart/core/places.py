@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from jaart.core import memory
 from jaart.core.addresses import address_of
 from jaart.core.bricks import brick_slots, bricks_of, slot_numbers
-from jaart.core.errors import SettingsError
 from jaart.core.kernels import blocks, call, cell_gather, near
 from jaart.core.kernels.guess import GUESS_WIDTH
 from jaart.core.kernels.records import FIT_SIZE, Cell, Sites
@@ -135,7 +134,7 @@ class Places:
         """Address and bytes of one more chunk, which has room for so many. Raises SettingsError where memory ends."""
         made = np.empty(-(-max(need, CHUNK) // 8))
         with self._lock:
-            check(sum(one.nbytes for one in (*self.chunks, made)), self._what)
+            memory.check(sum(one.nbytes for one in (*self.chunks, made)), self._what)
             self.chunks.append(made)
         return address(made), made.nbytes
 
@@ -155,13 +154,6 @@ def address(array: NDArray[Any]) -> int:
     """Where an array begins; it must be contiguous."""
     assert array.flags.c_contiguous
     return int(array.ctypes.data)
-
-
-def check(needed: float, what: str) -> None:
-    """Raise SettingsError where something needs more bytes than it may take."""
-    if needed > memory.limit():
-        raise SettingsError(f"{what}: needs {memory.words(needed)} of memory, more than the "
-                            f"{memory.words(memory.limit())} it may take")
 
 
 def places_of(sites: Sites) -> Places:

@@ -12,7 +12,7 @@ from jaart.core import placements
 from jaart.core.filters import filtered
 from jaart.core.gradients import gradients
 from jaart.core.lattice import interface_cells
-from jaart.core.memory import pieces
+from jaart.core.memory import ITEM, check, pieces
 from jaart.core.scene import Array
 from jaart.core.settings import Settings
 
@@ -72,6 +72,7 @@ def make_surfels(levels: Array, settings: Settings, spacing: Vector = CUBIC) -> 
     """
     levels = filtered(levels, settings)
     cells = interface_cells(levels, settings.neighbours, settings.border)
+    check(ITEM * len(cells), f"a surfel in each of {len(cells)} interface cells")
     slopes = gradients(levels, cells, settings.border, settings.gradient, settings.smoothing)
     defined = slopes.any(axis=1)
     found, without = len(cells), int((~defined).sum())
