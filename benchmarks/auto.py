@@ -1,8 +1,8 @@
 """What `tolerance = auto` saves, and that nothing of it can be seen: against the same picture traced to 1e-9.
 
-On a lattice f jumps where lists of surfels end, so that some rays have no hit at 1e-9 at all, or another one: a hit
-more is what auto keeps. `off` is how far the surface is from the true one, median of the hits: the model's error, which
-visible.ERROR and FITTED_ERROR give from below.
+`hits` are those of auto less those at 1e-9: a few rays differ, mostly on lattices. f jumps there where lists of
+surfels end (benchmarks/jumps.py); whether that is why is not measured. `off` is how far the surface is from the true
+one, median of the hits: the model's error, which visible.ERROR and FITTED_ERROR give from below.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from jaart.core.parameter import Length
 from jaart.core.samples import bumpy_sphere
 
 SIZE, REPEATS = (256, 256), 7
-#: Where no surfel's neighbourhood ends, so that the tolerance alone differs.
+#: Far below every tolerance that auto comes to; the radius is auto's, so that the tolerance alone differs.
 EXACT = 1e-9
 METHODS: dict[str, dict[str, Any]] = {
     "plane": {"method": "tangent", "search": "iterate"}, "polynomial": {"method": "polynomial", "search": "secant"}}

@@ -135,17 +135,20 @@ def slid(window, turn: int) -> dict[str, float]:
     model, slider = window.model, window.docks["Parameters"].panel.rows["h"].slider
     clock, first = Clock(), []
 
+    def new() -> bool:
+        return model.hits.settings == model.settings
+
     def made() -> None:
-        if model.hits.settings == model.settings and not first:
+        if new() and not first:
             first.append(model.hits)
-            clock.mark("coarse picture in the window")
+            clock.mark("panels told of the coarse picture")
 
     model.hits_changed.connect(made)
-    coarse = watch_paints(QApplication.instance(), {"view": window.view}, lambda: bool(first))
-    full = watch_paints(QApplication.instance(), {"view": window.view}, lambda: bool(first) and model.complete)
+    coarse = watch_paints(QApplication.instance(), {"view": window.view}, new)
+    full = watch_paints(QApplication.instance(), {"view": window.view}, lambda: new() and model.complete)
     slider.setValue(slider.value() + (1 if turn % 20 < 10 else -1))
-    clock.mark("panels told")
-    wait(lambda: "view" in full)
+    clock.mark("panels told of the value")
+    wait(lambda: "view" in full and first)
     model.hits_changed.disconnect(made)
     for seen in (coarse, full):
         seen.stop()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 
@@ -13,12 +14,15 @@ def main(arguments: list[str] | None = None) -> int:
     """
     try:
         from jaart.cli import run
+        from jaart.cli_interrupt import leave
 
-        return run(sys.argv[1:] if arguments is None else arguments)
+        status = run(sys.argv[1:] if arguments is None else arguments)
+        if status == 130:
+            leave(status)
+        return status
     except KeyboardInterrupt:  # while the program itself was loaded
         print("jaart: interrupted", file=sys.stderr)
-        exec("")  # see jaart.cli.run
-        return 130
+        os._exit(130)
 
 
 if __name__ == "__main__":

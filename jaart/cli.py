@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import sys
 from pathlib import Path
@@ -14,9 +15,10 @@ from jaart import cli_files as files
 from jaart import cli_isosurface as meshes
 from jaart import cli_plan as plans
 from jaart import cli_progress as bars
+from jaart import cli_rays as pictures
 from jaart import cli_report as report
 from jaart import cli_study as studies
-from jaart.cli_interrupt import interruptible
+from jaart.cli_interrupt import beside
 from jaart.cli_options import (
     DEFAULT_PRESET,
     DEFAULT_SIZE,
@@ -43,8 +45,10 @@ def run(arguments: list[str]) -> int:
     command = typer.main.get_command(app)
     try:
         words = typed.complete(arguments, getattr(command, "commands", {}))
+        if isinstance(sys.stdout, io.TextIOWrapper):
+            sys.stdout.reconfigure(line_buffering=True)  # what was said stays said when Ctrl-C ends the process
         with bars.shown():
-            status = command.main(words, prog_name="jaart", standalone_mode=False)
+            status = _main(command, words) if words[0] == "gui" else beside(lambda: _main(command, words))
     except JaartError as error:
         return _fail(str(error), 1)
     except _USAGE as error:
@@ -60,7 +64,6 @@ def run(arguments: list[str]) -> int:
     except MemoryError:
         return _fail("not enough memory for this scene and size", 1)
     if status == 130:  # what the parser makes of Ctrl-C as well
-        exec("")  # else an interrupt while a module was loaded ends the process by a signal when it is done
         return _fail("interrupted", 130)
     return status if isinstance(status, int) else 0
 
@@ -138,51 +141,27 @@ def settings(name: Annotated[str | None, typer.Argument(metavar="NAME", help=(
 def render(
         scene: SceneName, size: SizeText = DEFAULT_SIZE, camera: CameraTexts = None,
         preset: PresetName = DEFAULT_PRESET, set_: SetTexts = None, frame: Frame = None,
-        map_: Annotated[str, typer.Option("--map", metavar="NAME", help=(
-            "What colours mean: shaded, iterations, evaluations, off_centre, sampling, lowered, depth, status, "
-            "distance_error, normal_error."))] = "shaded",
-        rays: Annotated[Path | None, typer.Option(metavar="FILE", help=(
-            "Trace the origins and directions (R, 3) of this .npz instead of a camera's; needs --hits."))] = None,
-        threads: Threads = None,
-        output: OutputFile = None,
-        hits: Annotated[Path | None, typer.Option(metavar="FILE", help="Every ray's hit as arrays, .npz.")] = None,
-        ) -> None:
+        map_: pictures.MapName = "shaded", rays: pictures.RaysFile = None, threads: Threads = None,
+        output: OutputFile = None, hits: pictures.HitsFile = None) -> None:
     """Render a picture, or trace rays.
 
     To files; without --output and --hits to SCENE.png in this folder.
     """
     if rays is not None:
-        typed.check_rays_alone(camera, output, hits, map_)
-        if size != DEFAULT_SIZE:
-            print("jaart: note: --size has no meaning with --rays", file=sys.stderr)
-    elif output is None and hits is None:
-        output = Path(f"{Path(scene).stem or 'scene'}.png")
-    if output is not None:
-        typed.output(output, "--output", ".png")
-    if hits is not None:
-        typed.output(hits, "--hits", ".npz")
+        pictures.check_rays_alone(size, camera, output, hits, map_)
+    output = pictures.check_outputs(scene, output, hits)
     shape, chosen = typed.size(size), typed.settings(preset, set_ or [])
     loaded, chosen = files.open_scene(scene, frame, chosen, preset, set_)
     files.check_map(map_, loaded, chosen)
-    listed = None if rays is None else typed.rays(rays)
     view = None if rays is not None else typed.camera(camera or [], loaded, chosen, shape)
+    found = pictures.traced(loaded, chosen, view, shape, threads, rays)
 
-    from jaart.core.picture import finish
     from jaart.core.quality import quality
-    from jaart.core.render import render as trace_rays
 
-    report.say_compiling(loaded, chosen)
-    with interruptible() as cancel:
-        with bars.counted("rays") as progress:
-            found = trace_rays(loaded, chosen, view, shape, rays=listed, threads=threads, progress=progress,
-                               cancel=cancel)
-        errors = quality(found, loaded) if loaded.model is not None or map_.endswith("_error") else None
-        print(report.hits_line(found, loaded, errors))
-        report.say_notes(loaded, chosen, found)
-        if output is not None:
-            with bars.counted("light") as progress:
-                colours = finish(found, loaded, map_, errors, cancel=cancel, progress=progress, threads=threads)
-            files.write_picture(colours, found, loaded, errors, map_, output)
+    errors = quality(found, loaded) if loaded.model is not None or map_.endswith("_error") else None
+    pictures.say(found, loaded, chosen, errors)
+    if output is not None:
+        pictures.write_picture(found, loaded, map_, errors, threads, output)
     if hits is not None:
         files.write_hits(found, hits)
 
@@ -239,17 +218,12 @@ def statistics(
     typed.output(output, "--output", ".csv", ".svg")
     shape, chosen = typed.size(size), typed.settings(preset, set_ or [])
     loaded, chosen = files.open_scene(scene, frame, chosen, preset, set_)
-    view = typed.camera(camera or [], loaded, chosen, shape)
+    found = pictures.traced(loaded, chosen, typed.camera(camera or [], loaded, chosen, shape), shape, threads)
 
     from jaart.core.quality import quality
-    from jaart.core.render import render as trace_rays
 
-    report.say_compiling(loaded, chosen)
-    with interruptible() as cancel, bars.counted("rays") as progress:
-        found = trace_rays(loaded, chosen, view, shape, threads=threads, progress=progress, cancel=cancel)
     errors = quality(found, loaded)
-    print(report.hits_line(found, loaded, errors))
-    report.say_notes(loaded, chosen, found)
+    pictures.say(found, loaded, chosen, errors)
     files.write_statistics(found, errors, output)
 
 
@@ -264,8 +238,8 @@ def isosurface(
     loaded, chosen = files.open_scene(scene, frame, chosen, preset, set_, meshes.IMPLIED)
     along = meshes.direction_of(energy, direction, camera or [], loaded, chosen)
     report.say_compiling(loaded, chosen)
-    with interruptible() as cancel, bars.counted("layers of cells") as progress:
-        meshes.write(loaded, chosen, energy, along, output, cancel, progress)
+    with bars.counted("layers of cells") as progress:
+        meshes.write(loaded, chosen, energy, along, output, progress)
 
 
 @app.command()
@@ -275,8 +249,8 @@ def study(name: studies.StudyName, output: studies.Folder, quick: studies.Quick 
     stability: every stiff and extreme case, with what was expected and what came of it.
     """
     studies.check(name, output)
-    with interruptible() as cancel, bars.counted("cases", alone=True) as progress:
-        return studies.run_stability(output, quick, cancel, progress)
+    with bars.counted("cases", alone=True) as progress:
+        return studies.run_stability(output, quick, progress)
 
 
 @app.command(hidden=True)
@@ -290,6 +264,10 @@ def preview(scene: SceneName,
     output.mkdir(parents=True, exist_ok=True)
     for path in write_preview(loaded, output):
         print(f"wrote {path}")
+
+
+def _main(command: Any, words: list[str]) -> Any:
+    return command.main(words, prog_name="jaart", standalone_mode=False)
 
 
 def _fail(message: str, status: int) -> int:

@@ -37,14 +37,14 @@ def usage(option: str, problem: str) -> typer.BadParameter:
 
 def complete(arguments: Sequence[str], commands: Collection[str]) -> list[str]:
     """Arguments as the parser takes them: "gui" where no command is named, one K=V after each flag."""
-    from jaart.core.io import BUILT_IN
-
     words = list(arguments)
     if not words:
         return ["gui"]
     first = words[0]
     if first in commands or first.startswith("-"):
         return spread(words)
+    from jaart.core.io import BUILT_IN
+
     close = difflib.get_close_matches(first, commands, n=1)
     if close and first not in BUILT_IN and not os.path.exists(first):
         raise typer.BadParameter(f"no command or file is called {first!r}; did you mean {close[0]}?")
@@ -183,15 +183,6 @@ def output(path: Path, option: str, *suffixes: str) -> None:
         raise FileError(path, f"cannot be written: there is no folder {str(path.parent)!r}")
     if not os.access(path.parent, os.W_OK):
         raise FileError(path, f"cannot be written: no permission in the folder {str(path.parent)!r}")
-
-
-def check_rays_alone(camera: list[str] | None, output: Path | None, hits: Path | None, map_: str) -> None:
-    """Refuse options that have no meaning with --rays."""
-    if hits is None:
-        raise usage("--rays", "needs --hits FILE.npz to write to")
-    for option, given in (("--camera", camera), ("--output", output), ("--map", map_ != "shaded")):
-        if given:
-            raise usage(option, "has no meaning with --rays, which make no picture")
 
 
 def which_ray(at: str | None, origin: str | None, direction: str | None) -> tuple[tuple[int, int] | None, Ray | None]:

@@ -1,28 +1,43 @@
-"""Ctrl-C ends a command and every thread that works for it."""
+"""Ctrl-C ends a command at once, whatever its threads or a library are doing."""
 
 from __future__ import annotations
 
-import signal
-from collections.abc import Iterator
-from contextlib import contextmanager
-from threading import Event
+import os
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from contextvars import copy_context
+from typing import NoReturn, TypeVar
 
-from jaart.core.errors import Cancelled
+from jaart.core.unfinished import none_written
+
+T = TypeVar("T")
+
+#: How long some systems take to answer Ctrl-C while they wait for a thread [s].
+TICK = 0.1
 
 
-@contextmanager
-def interruptible() -> Iterator[Event]:
-    """An event that Ctrl-C sets before it is raised, so that no thread works on."""
-    cancel = Event()
+def beside(work: Callable[[], T]) -> T:
+    """What the work returns, or raises, done in a thread of its own.
 
-    def stop(*_: object) -> None:
-        cancel.set()
-        raise KeyboardInterrupt
+    A thread in a library's call of many seconds could not answer Ctrl-C, this one only waits. `leave` must follow.
+    """
+    task, context = Future[T](), copy_context()
 
-    before = signal.signal(signal.SIGINT, stop)
-    try:
-        yield cancel
-    except Cancelled:
-        raise KeyboardInterrupt from None
-    finally:
-        signal.signal(signal.SIGINT, before)
+    def run() -> None:
+        try:
+            task.set_result(context.run(work))
+        except BaseException as error:
+            task.set_exception(error)
+
+    thread = threading.Thread(target=run, name="jaart command", daemon=True)
+    thread.start()
+    while thread.is_alive():
+        thread.join(TICK)
+    return task.result()
+
+
+def leave(status: int) -> NoReturn:
+    """End the process without its threads: what they do is worth nothing, and what they write is removed."""
+    with none_written():
+        os._exit(status)

@@ -12,7 +12,6 @@ from jaart.core.errors import SettingsError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from threading import Event
 
     from jaart.core.contour import Mesh
     from jaart.core.scene import Scene
@@ -75,13 +74,13 @@ def check_output(output: Path) -> None:
     typed.output(output, "--output", *SUFFIXES)
 
 
-def write(scene: Scene, settings: Settings, energy: str, direction: Any, output: Path, cancel: Event,
+def write(scene: Scene, settings: Settings, energy: str, direction: Any, output: Path,
           progress: Callable[[int, int], None] | None = None) -> None:
     """Make the mesh, write it and say so."""
     from jaart.core.isosurface import isosurface
     from jaart.core.mesh_files import save_mesh
 
-    mesh: Mesh = isosurface(scene, settings, energy, direction=direction, cancel=cancel, progress=progress)
+    mesh: Mesh = isosurface(scene, settings, energy, direction=direction, progress=progress)
     save_mesh(mesh, output, scene.spacing, scene.origin)
     print(f"{len(mesh.vertices)} vertices, {len(mesh)} triangles")
     print(f"wrote {output}")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import platform
 import sys
 from collections.abc import Iterable
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import jaart
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
 
 def versions() -> str:
     """The version, and those of what decides its results and its safety."""
+    from importlib.metadata import version
     from pyexpat import EXPAT_VERSION
 
     return (f"jaart {jaart.__version__}\npython {platform.python_version()}, numpy {version('numpy')}, "

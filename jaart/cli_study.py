@@ -12,7 +12,6 @@ from jaart.core.errors import FileError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from threading import Event
 
     from jaart.core.study.stability.case import Result
 
@@ -32,11 +31,11 @@ def check(name: str, output: Path) -> None:
         raise FileError(output, "is a file; expected a folder")
 
 
-def run_stability(output: Path, quick: bool, cancel: Event, progress: Callable[[int, int], None] | None) -> int:
+def run_stability(output: Path, quick: bool, progress: Callable[[int, int], None] | None) -> int:
     """Run the stiff and extreme cases, print their table and save it; the exit status is 1 where one does not hold."""
     from jaart.core.study.stability.study import holding, save, stability
 
-    results = stability(quick, progress, cancel)
+    results = stability(quick, progress)
     for result in results:
         print(_lines(result))
     for path in save(results, output):

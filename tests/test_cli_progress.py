@@ -12,9 +12,13 @@ import termios
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import jaart
+
+Floats = NDArray[np.float32]
 
 pty = pytest.importorskip("pty", reason="there are no such terminals here")
 
@@ -26,7 +30,15 @@ LONG = {
     "rays": ["render", "splash", "--size", "6000x6000", "--hits", "h.npz", "--output", "p.png"],
     "rays ": ["statistics", "splash", "--size", "6000x6000", "--output", "s.csv"],
     "cases": ["study", "stability", "--output", "study"],
+    "layers of cells": ["isosurface", "standard", "--energy", "tangent", "--subdivide", "6", "--set", "raster=64",
+                        "--output", "m.ply"],
+    "light through water": ["render", "splash", "--set", "shading=water", "--size", "1200x1200", "--output", "p.png"],
+    "reading points.npz": ["info", "points.npz"],
+    "nearest neighbours": ["render", "points.npz", "--set", "ball_k=64", "--output", "p.png"],
+    "normals of the points": ["render", "points.npz", "--set", "normal=surfel", "--output", "p.png"],
 }
+#: How many points are in the file, where it is not a few.
+POINTS = {"reading points.npz": 3_000_000, "nearest neighbours": 400_000, "normals of the points": 400_000}
 #: 200 solids that overlap in a fine lattice.
 MANY = '<SceneGraph raster="200">' + "".join(
     f'<Sphere radius="0.3"><location x="{0.4 + 0.001 * i}" y="0.5" z="0.5"/></Sphere>' for i in range(200)
@@ -69,9 +81,17 @@ class Terminal:
         return self.process.returncode, out
 
 
+def on_a_sphere(count: int) -> Floats:
+    """Points (count, 3)."""
+    v = np.random.default_rng(3).normal(size=(count, 3))
+    points: Floats = (v / np.linalg.norm(v, axis=1)[:, None]).astype(np.float32)
+    return points
+
+
 @pytest.mark.parametrize("work", LONG)
 def test_long_work_is_shown_and_ctrl_c_ends_it_in_one_line(work: str, tmp_path: Path) -> None:
     (tmp_path / "many.xml").write_text(MANY)
+    np.savez(tmp_path / "points.npz", points=on_a_sphere(POINTS.get(work, 10)))
     terminal = Terminal(LONG[work], tmp_path)
     terminal.read_until(work.strip())
     status, out = terminal.interrupt()
@@ -79,7 +99,7 @@ def test_long_work_is_shown_and_ctrl_c_ends_it_in_one_line(work: str, tmp_path: 
     assert status == 130 and "Traceback" not in terminal.shown, terminal.shown
     assert lines[-1] == "jaart: interrupted" and terminal.shown.count("interrupted") == 1, lines[-3:]
     assert "wrote" not in out
-    assert [p.name for p in tmp_path.iterdir()] == ["many.xml"]
+    assert {p.name for p in tmp_path.iterdir()} == {"many.xml", "points.npz"}
 
 
 def test_what_is_done_at_once_shows_nothing(tmp_path: Path) -> None:

@@ -7,6 +7,8 @@ import sys
 import tomllib
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parent.parent
 HEAVY = ("PySide6", "qtpy", "pyvista", "pyvistaqt", "vtkmodules", "matplotlib")
 
@@ -42,6 +44,14 @@ assert main(["plan", "standard"]) == 0
 """, tmp_path)
     assert loaded.isdisjoint(HEAVY)
     assert {p.name for p in tmp_path.iterdir()} == {"p.png", "h.npz", "t.json"}
+
+
+@pytest.mark.parametrize("arguments", [["settings"], ["settings", "radius"], ["--version"], ["--help"],
+                                       ["render", "--help"], ["render", "standard", "--size", "wide"]], ids=" ".join)
+def test_what_needs_no_scene_loads_no_numbers(arguments, tmp_path):
+    loaded = loaded_by(f"from jaart.__main__ import main; main({arguments!r})", tmp_path)
+    assert "typer" in loaded
+    assert loaded.isdisjoint({*HEAVY, "numpy", "numba", "scipy"})
 
 
 def test_the_package_alone_loads_nothing_heavy(tmp_path):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-import signal
 import subprocess
 import sys
 import threading
@@ -17,13 +16,15 @@ import pytest
 
 import jaart
 from jaart import cli_progress
+from jaart.core.errors import Cancelled
 from jaart.core.io import load
+from jaart.core.pieces import do_each
 from jaart.core.quality import quality
 from jaart.core.render import render
 from jaart.core.scene import Model, Scene
 from jaart.core.settings import Settings
 from jaart.core.shapes import Sphere
-from jaart.core.telling import doing, tell, told
+from jaart.core.telling import doing, stoppable, tell, told
 from tests.core.cloud_scenes import fresh
 
 ROOT = Path(jaart.__file__).parents[1]
@@ -88,6 +89,50 @@ def test_only_the_thread_that_watches_is_told_and_after_an_error_nobody() -> Non
     assert said == [("here", 0, 0), ("here", 1, 2), ("", 0, 0)]
 
 
+@pytest.mark.parametrize("stage", ["nearest neighbours", "normals of the points", "balls"])
+def test_a_cloud_that_is_made_ready_is_stopped_in_every_stage(stage: str) -> None:
+    scene, stop = fresh("sphere", 300, bare=True), threading.Event()
+    settings = Settings(method="tangent", normal="surfel")
+
+    def stopping(what: str, _done: int, _total: int) -> None:
+        if what == stage:
+            stop.set()
+
+    with told(stopping), pytest.raises(Cancelled):
+        render(scene, settings, size=(4, 4), cancel=stop)
+    assert "cloud_tracer" not in scene._kept
+    assert render(scene, settings, size=(4, 4), cancel=threading.Event()).counts()["converged"]
+
+
+def test_work_outside_a_stoppable_block_goes_on() -> None:
+    stop = threading.Event()
+    stop.set()
+    with (pytest.raises(Cancelled, match="here was cancelled"), told(lambda *one: None), doing("here"),
+          stoppable(stop), stoppable(None)):
+        tell(1, 2)
+    tell(1, 2)
+    with doing("later"):
+        tell(1, 2)
+
+
+def test_what_progress_raises_ends_the_pieces_that_have_not_begun() -> None:
+    done, gate = list[int](), threading.Event()
+
+    def piece(number: int) -> None:
+        if number:
+            gate.wait(30)
+        done.append(number)
+
+    def progress(_: int, all_pieces: int) -> None:
+        assert all_pieces == 100
+        threading.Timer(0.1, gate.set).start()
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        do_each(piece, range(100), threads=2, progress=progress)
+    assert 0 in done and len(done) < 5
+
+
 def test_a_bar_is_drawn_on_a_terminal_after_a_while_and_cleared(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
@@ -149,4 +194,15 @@ def test_ctrl_c_while_a_scene_is_made_ready_leaves_nothing(command: list[str], t
     assert done.returncode == 130 and done.stdout == ""
     assert done.stderr.splitlines()[-1] == "jaart: interrupted" and "Traceback" not in done.stderr
     assert not list(tmp_path.iterdir())
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_a_process_that_ends_while_a_thread_writes_leaves_the_old_file(tmp_path: Path) -> None:
+    (tmp_path / "x.csv").write_text("old")
+    program = "import threading\nfrom jaart.cli_interrupt import leave\nfrom jaart.core.io.atomic import replacing\n" \
+              "begun = threading.Event()\ndef write():\n with replacing('x.csv') as part:\n" \
+              "  part.write_text('half')\n  begun.set()\n  threading.Event().wait()\n" \
+              "threading.Thread(target=write).start()\nbegun.wait()\nprint('said', flush=True)\nleave(130)"
+    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True,
+                          env={**os.environ, "PYTHONPATH": str(ROOT)}, timeout=100)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "said\n", "")
+    assert [path.name for path in tmp_path.iterdir()] == ["x.csv"] and (tmp_path / "x.csv").read_text() == "old"

@@ -14,6 +14,7 @@ from jaart.core.kernels import (
     call,
     centres,
     cylinder_search,
+    first_guess,
     fitted,
     march,
     minimise,
@@ -24,7 +25,7 @@ from jaart.core.kernels import (
 )
 from jaart.core.kernels import records as r
 from jaart.core.kernels.records import Bounds, Plan, Rule, Search
-from jaart.core.meaning import oriented, shows_gradient
+from jaart.core.meaning import fits_centres, oriented, shows_gradient
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings
 
@@ -47,7 +48,7 @@ def plan_of(scene: Scene, settings: Settings, values: Chosen) -> Plan:
                  growth=int(settings.bail == "growth"), step=values.step,
                  energy=ENERGY_NUMBERS.get(values.method, r.TANGENT_STEP), emphasise=int(settings.emphasise),
                  level=values.level, true_normal=int(shows_gradient(settings)))
-    return Plan(rule, how, bounds_of(settings, values), address_of(searcher(values), call.SEARCH))
+    return Plan(rule, how, bounds_of(settings, values), address_of(searcher(scene, settings, values), call.SEARCH))
 
 
 def rule_of(scene: Scene, settings: Settings, values: Chosen) -> Rule:
@@ -83,10 +84,10 @@ def evaluator(values: Chosen) -> Any:
     return tangent.tangent_surfel if values.normal == "surfel" else tangent.tangent_covariance
 
 
-def kernels_of(values: Chosen) -> tuple[Any, ...]:
+def kernels_of(scene: Scene, settings: Settings, values: Chosen) -> tuple[Any, ...]:
     """The kernels that are called by address with these values."""
     fitted_ones = (approach.approach,) if values.method in FITTED else ()
-    return evaluator(values), searcher(values), accept.accept, *fitted_ones
+    return evaluator(values), searcher(scene, settings, values), accept.accept, *fitted_ones
 
 
 #: The kernel of each search.
@@ -97,8 +98,10 @@ SEARCHERS: dict[str, Any] = {
 }
 
 
-def searcher(values: Chosen) -> Any:
+def searcher(scene: Scene, settings: Settings, values: Chosen) -> Any:
     """The kernel that searches; a cylinder's is for clouds alone, lattices have a driver of their own."""
+    if scene.kind != "cloud" and fits_centres(scene, settings, values):
+        return first_guess.guessed_search
     if values.method == "cylinder":
         return cylinder_search.cylinder_search
     return SEARCHERS[values.search]

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels.cover import keep
 from jaart.core.memory import ITEM, check, pieces
+from jaart.core.pieces import do_each
 from jaart.core.scene import Array, Scene, frozen
+from jaart.core.telling import tell
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
@@ -21,10 +23,10 @@ GRID = 1 / 8
 DENSITY_K, OUTLIER = 6, 10.0
 #: The proposed h in lengths of a point's own square.
 AUTO_H = 1.2
-#: Points whose neighbours are looked for at a time.
-ASKED = 1 << 16
 #: Share of a ball's radius that must lie in another ball before it is left out.
 CORE = 0.5
+#: Points whose neighbours a thread finds at a time.
+POINTS_AT_ONCE = 1 << 14
 
 
 def bounds(scene: Scene) -> tuple[Array, Array]:
@@ -77,9 +79,7 @@ def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.int32]]:
 
 def kd_tree(scene: Scene) -> cKDTree:
     """A tree over `local_points` that finds nearest ones."""
-    from scipy.spatial import cKDTree
-
-    return scene.once("kd_tree", (), lambda: cKDTree(local_points(scene)))
+    return scene.once("kd_tree", (), lambda: _tree(local_points(scene)))
 
 
 def nearest_others(points: Array, k: int, tree: cKDTree | None = None) -> tuple[Array, NDArray[np.int32]]:
@@ -87,22 +87,33 @@ def nearest_others(points: Array, k: int, tree: cKDTree | None = None) -> tuple[
 
     A point that stands in the same place is another one. k is clipped to N - 1. tree: over these points.
     """
+    k = min(k, len(points) - 1)
+    distance, index = np.empty((len(points), max(k, 0))), np.empty((len(points), max(k, 0)), np.int32)
+    if k < 1:
+        return distance, index
+    tree = tree or _tree(points)
+
+    def find(rows: NDArray[np.intp]) -> None:
+        away, which = tree.query(points[rows], k + 1)
+        itself = which == rows[:, None]
+        itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
+        distance[rows], index[rows] = away[~itself].reshape(-1, k), which[~itself].reshape(-1, k)
+
+    # points of a leaf together, since they read the same parts of the tree
+    do_each(find, [tree.indices[i:i + POINTS_AT_ONCE] for i in range(0, len(points), POINTS_AT_ONCE)], progress=tell)
+    return distance, index
+
+
+def _tree(points: Array) -> cKDTree:
     from scipy.spatial import cKDTree
 
-    k, tree = max(min(k, len(points) - 1), 0), tree or cKDTree(points)
-    distances, others = np.empty((len(points), k)), np.empty((len(points), k), np.int32)
-    for piece in pieces(len(points) if k else 0, ASKED):
-        distance, index = tree.query(points[piece], k + 1, workers=-1)
-        itself = index == np.arange(piece.start, piece.stop)[:, None]
-        itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
-        distances[piece], others[piece] = distance[~itself].reshape(-1, k), index[~itself].reshape(-1, k)
-    return distances, others
+    return cKDTree(points)
 
 
 def kth_distance(scene: Scene, k: int, some: NDArray[np.int64]) -> Array:
     """Distance (M,) from some points to the k-th nearest other of each; 0 where there is no other."""
     k, found, points = min(k, len(_points(scene)) - 1), np.zeros(len(some)), local_points(scene)
-    for piece in pieces(len(some) if k > 0 else 0, ASKED):
+    for piece in pieces(len(some) if k > 0 else 0, POINTS_AT_ONCE):
         found[piece] = kd_tree(scene).query(points[some[piece]], [k + 1], workers=-1)[0][:, 0]
     return found
 

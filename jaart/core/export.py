@@ -29,6 +29,7 @@ _PER_RAY = ("origin", "direction", "hit", "t", "point", "normal", "status", "off
             "evaluations", "neighbours", "cells", "lowered", "gap", "starts", "eigenvectors", "gradients")
 
 
+@doing("writing the picture")
 def save_picture(picture: NDArray[np.uint8], path: Target) -> None:
     """Write an (h, w, 3) picture as PNG."""
     from PIL import Image

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from threading import Event
 
 import numpy as np
 
 from jaart.core import memory
-from jaart.core.errors import Cancelled, SettingsError
+from jaart.core.errors import SettingsError
 from jaart.core.kernels import field
 from jaart.core.kernels import records as r
 from jaart.core.kernels.records import Cells, Plan, Vector
+from jaart.core.pieces import do_each
 from jaart.core.places import served
 from jaart.core.scene import Array
 
@@ -69,11 +68,12 @@ def energy_field(energy: Energy, divisions: int, threads: int | None = None, can
         served(sites, lambda own, pool: field.sample_layer(own, plan, energy.direction, divisions, number, values,
                                                            pool.work, pool.fit))
 
-    _all(layer, range(sites.shape[0]), threads, cancel, progress)
+    do_each(layer, range(sites.shape[0]), threads, cancel, progress)
     return values
 
 
-def energy_gradients(energy: Energy, points: Array, threads: int | None = None, cancel: Event | None = None) -> Array:
+def energy_gradients(energy: Energy, points: Array, threads: int | None = None, cancel: Event | None = None,
+                     progress: Progress | None = None) -> Array:
     """The energy's gradient (N, 3) at points (N, 3) in cells, to about 1e-9; NaN where it is not defined.
 
     Raises Cancelled after cancel was set.
@@ -86,23 +86,8 @@ def energy_gradients(energy: Energy, points: Array, threads: int | None = None, 
         served(sites, lambda own, pool: field.write_gradients(own, plan, energy.direction, WIDTH * plan.rule.h,
                                                               at[part], result[part], pool.work, pool.fit))
 
-    _all(some, range(0, len(points), POINTS_AT_ONCE), threads, cancel)
+    do_each(some, range(0, len(points), POINTS_AT_ONCE), threads, cancel, progress)
     return result
-
-
-def _all(work: Callable[[int], None], numbers: range, threads: int | None, cancel: Event | None,
-         progress: Progress | None = None) -> None:
-    """Do the work of every number in a pool of threads. Raises Cancelled after cancel was set."""
-    def one(number: int) -> None:
-        if cancel is None or not cancel.is_set():
-            work(number)
-
-    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
-        for done, _ in enumerate(pool.map(one, numbers), 1):
-            if progress is not None:
-                progress(done, len(numbers))
-    if cancel is not None and cancel.is_set():
-        raise Cancelled("the field of the energy was cancelled")
 
 
 def _check_memory(shape: tuple[int, ...], divisions: int) -> None:

@@ -20,6 +20,7 @@ from jaart.core.meshes import energy_mesh, level_mesh
 from jaart.core.render import unit
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings
+from jaart.core.telling import stoppable
 from jaart.core.warm import warm_up
 
 #: What may be asked for.
@@ -40,12 +41,13 @@ def isosurface(scene: Scene, settings: Settings | None = None, energy: str | Non
     asked = asked_settings(settings or Settings(), energy, level, subdivide)
     name = energy or asked.energy
     along = _direction(name, direction)
-    values = warm_up(scene, asked)
-    if asked.method == "fill_level":
-        return level_mesh(prepare.levels(scene, asked), asked, values.level, edges(scene))
-    made = Energy(prepare.cells(scene, asked, values), plan_of(scene, asked, values), name,
-                  asked.emphasise, along)
-    return energy_mesh(made, asked.subdivide, values.level, threads, cancel, progress)
+    with stoppable(cancel):
+        values = warm_up(scene, asked)
+        if asked.method == "fill_level":
+            return level_mesh(prepare.levels(scene, asked), asked, values.level, edges(scene))
+        made = Energy(prepare.cells(scene, asked, values), plan_of(scene, asked, values), name,
+                      asked.emphasise, along)
+        return energy_mesh(made, asked.subdivide, values.level, threads, cancel, progress)
 
 
 def asked_settings(settings: Settings, energy: str | None = None, level: float | str | None = None,

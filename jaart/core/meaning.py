@@ -110,9 +110,14 @@ def stretches(values: Chosen) -> bool:
     return values.search in STRETCHES or values.method == "cylinder"
 
 
-def fits_centres(scene: Scene, values: Chosen) -> bool:
-    """Whether the plane or polynomial at a ball's centre is kept, where a ray begins."""
-    return scene.kind == "cloud" and not stretches(values)
+def fits_centres(scene: Scene, settings: Settings, values: Chosen) -> bool:
+    """Whether the surface at a place's centre is kept, which says where a search begins.
+
+    In a lattice a plane is not: looking it up costs as much as the evaluations that it spares.
+    """
+    if scene.kind == "cloud":
+        return not stretches(values)
+    return values.method in FITTED and values.search in STEPPING and settings.traversal == "exact"
 
 
 def weighs(values: Chosen) -> bool:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from jaart.core.contour import Indices, Mesh
 from jaart.core.errors import FileError
 from jaart.core.io.atomic import replacing
+from jaart.core.telling import doing
 
 #: Kinds of files, by suffix; .vtp keeps float64, the others hold single precision.
 SUFFIXES = (".ply", ".stl", ".obj", ".vtp")
@@ -20,6 +21,7 @@ Vector = tuple[float, float, float]
 Floats = NDArray[np.floating[Any]]
 
 
+@doing("writing the mesh")
 def save_mesh(mesh: Mesh, path: str | PathLike[str], spacing: Vector = (1.0, 1.0, 1.0),
               origin: Vector = (0.0, 0.0, 0.0)) -> None:
     """Write a mesh with its normals (.stl has none of vertices), whole or not at all.
@@ -36,7 +38,8 @@ def save_mesh(mesh: Mesh, path: str | PathLike[str], spacing: Vector = (1.0, 1.0
         writer = _writer(path.suffix.lower())
         writer.SetFileName(str(part))
         writer.SetInputData(data)
-        if not writer.Write() or writer.GetErrorCode():
+        writer.Update()  # as Write, but other threads go on meanwhile: that which answers Ctrl-C
+        if writer.GetErrorCode():
             raise FileError(path, "cannot be written: is the disk full?")
 
 

@@ -19,6 +19,7 @@ from jaart.core.meaning import shows_gradient
 from jaart.core.meshes import energy_mesh, level_mesh
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
+from jaart.core.telling import tell
 from jaart.core.tiles import Pixels, columns_for
 from jaart.core.tracers import NO_BEGINS, NO_LOG, OnLattice
 from jaart.core.tree import box_tree
@@ -62,7 +63,7 @@ def mesh_tracer(scene: Scene, settings: Settings, values: Chosen, table: Callabl
         if values.method == "fill_level":
             return level_mesh(levels, settings, values.level, edges(scene))
         energy = Energy(table(), plan, settings.energy, settings.emphasise)
-        return energy_mesh(energy, settings.subdivide, values.level, cancel=cancel)
+        return energy_mesh(energy, settings.subdivide, values.level, cancel=cancel, progress=tell)
 
     key, flat = (settings.key("rays"), values), shows_gradient(settings)
     mesh = scene.once("mesh", key, make)

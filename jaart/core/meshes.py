@@ -14,6 +14,7 @@ from jaart.core.filters import filtered
 from jaart.core.kernels.records import Vector
 from jaart.core.scene import Array, frozen
 from jaart.core.settings import Settings
+from jaart.core.telling import doing, tell
 
 
 def energy_mesh(energy: Energy, divisions: int, level: float, threads: int | None = None,
@@ -27,8 +28,10 @@ def energy_mesh(energy: Energy, divisions: int, level: float, threads: int | Non
     """
     values, step = energy_field(energy, divisions, threads, cancel, progress), 1.0 / divisions
     between = _between(values[np.isfinite(values)])
-    mesh = _some(contour(values, level, step=(step, step, step)), level, energy.name, between)
-    gradient = energy_gradients(energy, mesh.vertices, threads, cancel)
+    with doing("triangles"):
+        mesh = _some(contour(values, level, step=(step, step, step)), level, energy.name, between)
+    with doing("normals of the triangles"):
+        gradient = energy_gradients(energy, mesh.vertices, threads, cancel, tell)
     size = np.linalg.norm(gradient, axis=1, keepdims=True)
     with np.errstate(divide="ignore", invalid="ignore"):
         normals = np.where((size > 0) & (size < np.inf), gradient / size, mesh.normals)
@@ -47,7 +50,8 @@ def level_mesh(levels: Array, settings: Settings, level: float, spacing: Vector 
     if settings.border == "closed":
         kept, first = np.pad(kept, 1), -0.5
     x, y, z = (first * s for s in spacing)
-    return _some(contour(-kept, -level, (x, y, z), spacing), level, "the fill level", _between(kept))
+    with doing("triangles"):
+        return _some(contour(-kept, -level, (x, y, z), spacing), level, "the fill level", _between(kept))
 
 
 def _between(values: Array) -> str:

@@ -117,17 +117,19 @@ def _fits(values: Chosen, rule: Rule) -> tuple[Stage, ...]:
 
 
 def _search(scene: Scene, settings: Settings, values: Chosen) -> tuple[Stage, ...]:
-    kept = meaning.fits_centres(scene, values) and searches(values)
-    why_not = "a lattice keeps none" if scene.kind != "cloud" else "balls are searched from side to side"
-    guessed = "where the ray meets what is kept at a ball's centre"
-    unguessed = "a search begins where the ray enters a cell" if searches(values) else "no ray is searched"
+    kept = meaning.fits_centres(scene, settings, values) and searches(values)
+    place = "ball" if scene.kind == "cloud" else "cell"
+    guessed = f"where the ray meets what is kept at a {place}'s centre"
+    why_not = "no ray is searched"
+    if searches(values):
+        why_not = "a search begins where the ray enters a cell"
     if meaning.stretches(values) and searches(values):
-        unguessed = "a place is searched from side to side"
+        why_not = "a place is searched from side to side"
     where = "from side to side of each place" if meaning.stretches(values) else "from a start in each place"
     return (
-        stage("centre fits", kept, "kept for each ball that a ray asks for", why_not,
-              "method", "search"),
-        stage("first guess", kept, guessed, unguessed, "method", "search"),
+        stage("centre fits", kept, f"kept for each {place} that a ray asks for", why_not, "method", "search",
+              "traversal"),
+        stage("first guess", kept, guessed, why_not, "method", "search", "traversal"),
         stage("search", searches(values), f"{values.search}, {where}",
               "triangles are hit at once" if values.method in MESHES else "discs are hit at once", "method", "search"),
         stage("proof of misses", settings.proof, "bounds of the weights", "none is asked for", "search", "proof"))

@@ -23,7 +23,7 @@ from jaart.core.scene import Array, Scene, frozen
 from jaart.core.settings import Settings
 from jaart.core.shapes import Solid
 from jaart.core.surfels import Surfels, make_surfels, stretched_shape
-from jaart.core.tracers import LatticeTracer, Tracer
+from jaart.core.tracers import LatticeTracer, Tracer, centres_for
 
 __all__ = ["Prepared", "cells", "extent", "levels", "prepared", "raster", "solids", "surfels"]
 
@@ -90,8 +90,12 @@ def tracer(scene: Scene, settings: Settings, values: Chosen, cancel: Event | Non
         ball = settings.replace(neighbourhood="cell_ball")
         return cylinder_tracer(values, plan_of(scene, settings, values), lambda near: cells(scene, ball, near))
     uniform = values.stride if settings.traversal == "uniform" else 0.0
-    made = cells(scene, settings, values)._replace(stretches=int(meaning.stretches(values)), uniform=uniform)
-    return LatticeTracer(lambda: made, plan_of(scene, settings, values))
+    plan, table = plan_of(scene, settings, values), cells(scene, settings, values)
+    made, kept = table._replace(stretches=int(meaning.stretches(values)), uniform=uniform), None
+    if meaning.fits_centres(scene, settings, values):
+        key = (settings.key("neighbours"), values.radius, plan.rule, plan.how.evaluate)
+        kept = scene.once("centres", key, lambda: centres_for(table.sites))
+    return LatticeTracer(lambda: made, plan, kept)
 
 
 def balls(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
@@ -106,7 +110,7 @@ def cloud_tracer(scene: Scene, settings: Settings, values: Chosen) -> CloudTrace
     """A cloud's balls, with what earlier rays of the same settings asked for."""
     plan, made = plan_of(scene, settings, values), balls(scene, settings, values)
     return scene.once("cloud_tracer", (id(made), plan), lambda: CloudTracer(
-        made, plan, meaning.stretches(values), meaning.fits_centres(scene, values)))
+        made, plan, meaning.stretches(values), meaning.fits_centres(scene, settings, values)))
 
 
 def points(scene: Scene, settings: Settings, values: Chosen) -> Surfels | Points:

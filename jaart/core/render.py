@@ -8,10 +8,8 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from threading import Event
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jaart.core import extents, memory, prepare, visible
 from jaart.core.camera import Camera, check_size
@@ -23,14 +21,18 @@ from jaart.core.prepare import Prepared
 from jaart.core.records import Array, Hits
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings, preset
-from jaart.core.tiles import STEPS, Pixels, columns_for, in_blocks, pixels_at, tiles
+from jaart.core.telling import stoppable
+from jaart.core.tiles import STEPS, TILE, Pixels, columns_for, in_blocks, pixels_at, tile_of, tiles
 from jaart.core.tracers import NO_BEGINS, NO_BLOCKS
 from jaart.core.warm import warm_up
 
 #: What one ray and its hit take.
 _BYTES_A_RAY = 6 * 8 + 9 * 8 + 7 * 4 + 1
-#: A picture that is done sooner than this [s] shows nothing between its first coarse one and itself.
-PATIENCE = 0.15
+#: A picture that is done sooner than this [s] shows nothing between its first coarse one and itself: to trace rays
+#: that are no neighbours, and to copy and paint what they met, would make it a quarter later.
+PATIENCE = 0.3
+#: A ray of the first pass takes so many times as long as one among all: it has no neighbours, and finds less made.
+FIRST = 2.0
 
 Size = tuple[int, int]
 
@@ -51,8 +53,9 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
     """
     settings = settings or preset("best")
     job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays, any_hit)
-    warm_up(scene, settings)
-    ready = prepare.prepared(scene, visible.seen(scene, settings, job.camera, size), cancel)
+    with stoppable(cancel):
+        warm_up(scene, settings)
+        ready = prepare.prepared(scene, visible.seen(scene, settings, job.camera, size), cancel)
     count, begin = threads or os.cpu_count() or 1, time.perf_counter()
     with ThreadPoolExecutor(count) as pool:
         watch = _Watch(progress, cancel, job.count)
@@ -168,15 +171,15 @@ class _Run:
         """Seconds since it began."""
         return time.perf_counter() - self.begin
 
-    def trace(self, job: _Job, rows: Pixels, out: Out) -> None:
-        """Trace some of the rays and wait for them."""
-        def trace_tile(tile: Pixels) -> int:
+    def trace(self, job: _Job, rows: Pixels, out: Out, tile: int = TILE) -> None:
+        """Trace some of the rays, so many at once, and wait for them."""
+        def trace_tile(some: Pixels) -> int:
             if self.watch.stopped():
                 return 0
-            job.trace(self.ready, tile, out)
-            return len(tile)
+            job.trace(self.ready, some, out)
+            return len(some)
 
-        tasks = [self.pool.submit(trace_tile, tile) for tile in tiles(rows, self.threads)]
+        tasks = [self.pool.submit(trace_tile, some) for some in tiles(rows, self.threads, tile)]
         try:
             _wait(tasks, self.watch)
         except BaseException:  # an interrupt must not wait for the tiles that have not begun
@@ -197,26 +200,27 @@ class _Run:
 
 def _refined(run: _Run, size: Size, picture: Callable[[Hits], None]) -> Hits:
     """A picture after coarser ones. The first is made in columns of its own: those of all rays cost more than it."""
-    pixels = pixels_at(size, STEPS[0])
+    coarse, pixels = _coarse(size, STEPS[0]), pixels_at(size, STEPS[0])
     small, few = run.job.some(pixels), columns_for(len(pixels))
-    run.trace(small, np.arange(len(pixels)), few)
-    left = run.seconds * run.job.count / len(pixels)
-    picture(run.hits(small, few, _coarse(size, STEPS[0])))
-    out = columns_for(run.job.count)
-    columns: tuple[NDArray[Any], ...] = (*out, run.job.origins, run.job.directions)
-    for column, rows in zip(columns, (*few, small.origins, small.directions), strict=True):
-        column[pixels] = rows
-    for step, before in _finer(left):
-        run.trace(run.job, in_blocks(size, step, before), out)
+    begin = run.seconds
+    run.trace(small, in_blocks(coarse, 1), few)
+    ray = (run.seconds - begin) / len(pixels) / FIRST
+    picture(run.hits(small, few, coarse))
+    run.watch.done, out = 0, columns_for(run.job.count)
+    for step, before in _finer(ray * run.job.count):
+        run.trace(run.job, in_blocks(size, step, before), out, tile_of(ray * run.threads))
         if step > 1:
             picture(run.hits(run.job, out, _coarse(size, step), pixels_at(size, step)))
     return run.hits(run.job, out, size)
 
 
 def _finer(seconds: float) -> list[tuple[int, int]]:
-    """Steps of the passes after the first, each with the one before; the last alone where they take no longer."""
-    steps = STEPS if seconds > PATIENCE else (STEPS[0], STEPS[-1])
-    return list(zip(steps[1:], steps, strict=False))
+    """Steps of the passes after the first, each with the one before; the last alone where they take no longer.
+
+    The few rays of the first are traced again: whole blocks of neighbours are quicker than blocks with holes.
+    """
+    steps = STEPS[1:] if seconds > PATIENCE else STEPS[-1:]
+    return list(zip(steps, (0, *steps), strict=False))
 
 
 def _coarse(size: Size, step: int) -> Size:

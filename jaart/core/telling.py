@@ -1,6 +1,7 @@
 """Says what is being made and how far it is, to whoever watches: the command line, on a terminal.
 
-The watcher belongs to the thread that set it, so that nobody else is told, and costs nothing where there is none.
+Where work says how far it is, it may also be stopped. Watcher and stop belong to the thread that set them, so that
+nobody else is told or stopped, and cost nothing where there are none.
 """
 
 from __future__ import annotations
@@ -8,12 +9,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from threading import Event
+
+from jaart.core.errors import Cancelled
 
 #: Is told what is being made, how much of it is done and how much there is, 0 where nobody knows.
 Watcher = Callable[[str, int, int], None]
 
 _WATCHER: ContextVar[Watcher | None] = ContextVar("watcher", default=None)
 _NOW: ContextVar[str] = ContextVar("now", default="")
+_STOP: ContextVar[Event | None] = ContextVar("stop", default=None)
 
 #: What people call the stages that a scene keeps.
 STAGES = {"levels": "filling the lattice", "surfels": "surfels", "cells": "table of the cells", "mesh": "mesh",
@@ -32,8 +37,19 @@ def told(watcher: Watcher | None) -> Iterator[None]:
 
 
 @contextmanager
+def stoppable(stop: Event | None) -> Iterator[None]:
+    """Have what this thread makes in the block end with Cancelled soon after `stop` is set; None changes nothing."""
+    before = _STOP.set(stop or _STOP.get())
+    try:
+        yield
+    finally:
+        _STOP.reset(before)
+
+
+@contextmanager
 def doing(what: str) -> Iterator[None]:
     """Say what is being made in the block, and after it what it is a part of; nothing new where `what` is empty."""
+    _end_when_stopped()
     watcher = _WATCHER.get()
     if watcher is None or not what:
         yield
@@ -48,7 +64,8 @@ def doing(what: str) -> Iterator[None]:
 
 
 def tell(done: int, total: int) -> None:
-    """Say how far is what is being made."""
+    """Say how far is what is being made. Raises Cancelled where it is to stop."""
+    _end_when_stopped()
     watcher = _WATCHER.get()
     if watcher is not None and _NOW.get():
         watcher(_NOW.get(), done, total)
@@ -57,3 +74,9 @@ def tell(done: int, total: int) -> None:
 def watcher() -> Watcher | None:
     """Who is told now."""
     return _WATCHER.get()
+
+
+def _end_when_stopped() -> None:
+    stop = _STOP.get()
+    if stop is not None and stop.is_set():
+        raise Cancelled(f"{_NOW.get() or 'the work'} was cancelled")

@@ -12,6 +12,8 @@ from jaart.core.kernels.records import Out
 
 #: Rays in a tile: long enough to hide the cost of a task, short enough to stop soon.
 TILE = 4096
+#: A tile takes about so long [s], where that is known, within these bounds.
+TILE_SECONDS, SHORTEST, LONGEST = 0.003, 512, 16_384
 #: Few rays are shared evenly too: so many tiles for each thread, of no fewer rays than that.
 PIECES, LEAST = 4, 128
 #: Every so many pixels in each direction are traced by one pass after the other.
@@ -41,9 +43,15 @@ def in_blocks(size: tuple[int, int], step: int, before: int = 0) -> Pixels:
     return pixels
 
 
-def tiles(pixels: Pixels, threads: int = 1) -> list[Pixels]:
-    """The pixels in pieces of at most TILE, some for each thread."""
-    length = max(LEAST, min(TILE, -(-len(pixels) // (PIECES * threads))))
+def tile_of(seconds: float) -> int:
+    """How many rays make a tile when one takes a thread so long; whole blocks of neighbours."""
+    rays = int(min(max(TILE_SECONDS / max(seconds, 1e-12), SHORTEST), LONGEST))
+    return rays // EDGE**2 * EDGE**2
+
+
+def tiles(pixels: Pixels, threads: int = 1, most: int = TILE) -> list[Pixels]:
+    """The pixels in pieces of at most so many, some for each thread."""
+    length = max(LEAST, min(most, -(-len(pixels) // (PIECES * threads))))
     return [pixels[i:i + length] for i in range(0, len(pixels), length)]
 
 

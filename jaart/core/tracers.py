@@ -9,11 +9,12 @@ from typing import Protocol
 
 import numpy as np
 
-from jaart.core.kernels import beams, ray
+from jaart.core.kernels import beams, blocks, ray
+from jaart.core.kernels.guess import GUESS_WIDTH
 from jaart.core.kernels.packet import ROOM
 from jaart.core.kernels.pinhole import EDGE, View
 from jaart.core.kernels.records import LOG_WIDTH, Cells, Out, Plan, Sites
-from jaart.core.places import Pool, served
+from jaart.core.places import Ints, Pool, address, served
 from jaart.core.scene import Array
 from jaart.core.tiles import Pixels
 
@@ -80,8 +81,31 @@ class OnLattice:
         return NO_BLOCKS
 
 
+@dataclass(frozen=True, eq=False)
+class Centres:
+    """The polynomials at the centres of a lattice's cells, as far as rays asked for them.
+
+    asked: (S,) 1 where one is kept, numbered as slots of Sites; rows: (S, GUESS_WIDTH).
+    """
+
+    asked: Ints
+    rows: Array
+
+    def shown_to(self, pool: Pool) -> None:
+        """Let a thread know where they are."""
+        pool.numbers[blocks.ASKED], pool.numbers[blocks.ROWS] = address(self.asked), address(self.rows)
+
+
+def centres_for(sites: Sites) -> Centres:
+    """Room for as many as there are cells near a surfel; a page of it costs memory once it is used."""
+    return Centres(np.zeros(len(sites.slots), np.int64), np.zeros((len(sites.slots), GUESS_WIDTH)))
+
+
+@dataclass(frozen=True, eq=False)
 class LatticeTracer(OnLattice):
-    """A lattice of surfels whose surface each ray searches."""
+    """A lattice of surfels whose surface each ray searches; centres: where a search begins by them."""
+
+    centres: Centres | None = None
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
               any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
@@ -89,6 +113,8 @@ class LatticeTracer(OnLattice):
         packet = np.empty(ROOM)
 
         def rest(sites: Sites, pool: Pool, rays: Pixels) -> tuple[int, int]:
+            if self.centres:
+                self.centres.shown_to(pool)
             done, written = ray.trace_rays(self.cells._replace(sites=sites), self.plan, origins, directions, begins,
                                            rays, out, log, packet, pool.work, pool.fit)
             return done, written
@@ -100,9 +126,9 @@ class LatticeTracer(OnLattice):
         if self.cells.uniform > 0.0:
             return NO_BLOCKS
         near = max(self.cells.halo, 1) if self.cells.stretches == 1 else 1
-        blocks = np.empty((-(-view.height // EDGE), -(-view.width // EDGE)))
-        beams.write_blocks(view, self.cells.empty, near, 0, len(blocks), blocks)
-        return blocks
+        begins = np.empty((-(-view.height // EDGE), -(-view.width // EDGE)))
+        beams.write_blocks(view, self.cells.empty, near, 0, len(begins), begins)
+        return begins
 
 
 def all_of(sites: Sites, pixels: Pixels, rest: Callable[[Sites, Pool, Pixels], tuple[int, int]]) -> int:

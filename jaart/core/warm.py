@@ -45,7 +45,7 @@ def needs_compile(scene: Scene, settings: Settings) -> bool:
     except SettingsError:
         return False
     driver = ball_ray.trace_ball_rays if scene.kind == "cloud" else ray.trace_rays
-    return not all(compiled(f) for f in (driver, *assemble.kernels_of(values)))
+    return not all(compiled(f) for f in (driver, *assemble.kernels_of(scene, settings, values)))
 
 
 def warm_up(scene: Scene, settings: Settings, tracing: bool = False) -> Chosen:

@@ -95,6 +95,7 @@ class Analyzer3D(Panel):
 
     def _render(self) -> None:
         """Have the view painted, which renders it; to render it here too would do it twice."""
+        self._view.camera.SetUseHorizontalViewAngle(self._view.width() < self._view.height())
         self._view.reset_camera_clipping_range()
         self._view.update()
 

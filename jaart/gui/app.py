@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -37,46 +37,63 @@ def run(source: str | PathLike[str] | None = None, settings: Settings | None = N
     check()
     logging.basicConfig(format="%(name)s: %(message)s")
     sys.setswitchinterval(0.001)
-    from qtpy.QtCore import QEventLoop
     from qtpy.QtWidgets import QApplication
 
-    from jaart.gui import garbage
-    from jaart.gui.compiling import compile_beside, end
     from jaart.gui.main_window import MainWindow
     from jaart.gui.model import PICTURE
-    from jaart.gui.screenshot import Screenshot
 
     _check_pick(pick, PICTURE)
     app = QApplication.instance() or QApplication(["jaart"])
     app.setApplicationName("Jaart")
-    window, loop = MainWindow(), QEventLoop()
+    window = MainWindow()
     window.model.set_settings(settings or preset(next(iter(PRESETS))))
-    window.closed.connect(loop.quit)
-    window.loader.finished.connect(garbage.set_aside)
-    beside: list[QProcess | None] = []
-    if screenshot is None:
-        window.loader.finished.connect(lambda: beside.append(compile_beside(window)), _once())
     problems: list[str] = []
     end_without_a_scene(window, problems)
     if screenshot is not None:
-        window.model.failed.connect(problems.append)
-        window.model.failed.connect(window.close)
-        shot = Screenshot(window, Path(screenshot), pick is not None)
-        shot.taken.connect(window.close)
+        _end_when_taken(window, Path(screenshot), pick is not None, problems)
     if pick is not None:
         window.model.scene_changed.connect(lambda: window.model.pick(*pick), _once())
+
+    def begin() -> None:
+        for note in notes:
+            window.model.said.emit(note)
+        window.model.open(source or SAMPLE, frame, camera)
+
+    _show_until_closed(window, begin, compiling=screenshot is None)
+    if problems:
+        raise JaartError(problems[0])
+    return 0
+
+
+def _show_until_closed(window: MainWindow, begin: Callable[[], None], compiling: bool) -> None:
+    """Show the window, begin its work and return when it closes; compiling: kernels are compiled beside it."""
+    from qtpy.QtCore import QEventLoop
+
+    from jaart.gui import garbage
+    from jaart.gui.compiling import compile_beside, end
+
+    loop = QEventLoop()
+    beside: list[QProcess | None] = []
+    window.closed.connect(loop.quit)
+    window.loader.finished.connect(garbage.set_aside)
+    if compiling:
+        window.loader.finished.connect(lambda: beside.append(compile_beside(window)), _once())
     interrupt = signal.signal(signal.SIGINT, signal.SIG_DFL)  # Qt's loop would not let Python answer Ctrl-C
     window.show()
-    for note in notes:
-        window.model.said.emit(note)
-    window.model.open(source or SAMPLE, frame, camera)
+    begin()
     loop.exec()
     for process in beside:
         end(process)
     signal.signal(signal.SIGINT, interrupt)
-    if problems:
-        raise JaartError(problems[0])
-    return 0
+
+
+def _end_when_taken(window: MainWindow, path: Path, picked: bool, problems: list[str]) -> None:
+    """Save the window once everything in it is drawn, then close it; at once where anything fails, with the reason."""
+    from jaart.gui.screenshot import Screenshot
+
+    window.model.failed.connect(problems.append)
+    window.model.failed.connect(window.close)
+    Screenshot(window, path, picked).taken.connect(window.close)
 
 
 def _check_pick(pick: tuple[int, int] | None, size: tuple[int, int]) -> None:

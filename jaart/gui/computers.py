@@ -28,6 +28,7 @@ class Computers:
             worker.refused.connect(refuse)
             worker.said.connect(model.said)
             worker.ended.connect(ended)
+        rays.staged.connect(model.staged)
         for worker in self.workers[:2]:
             worker.progressed.connect(model.progressed)
 

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from qtpy.QtCore import QObject, QSize, Qt, Signal
 from qtpy.QtWidgets import QDockWidget, QLabel, QMainWindow, QStackedLayout, QWidget
 
+from jaart.gui.panel import Panel
+
 Area = Qt.DockWidgetArea
 
 
@@ -90,12 +92,18 @@ class PanelDock(QDockWidget):
         self._stack.addWidget(self._note)
         self.setWidget(self._body)
         self.panel: QWidget | None = None
+        self.visibilityChanged.connect(self._show_panel)
 
     def set_panel(self, panel: QWidget) -> None:
         """Show the panel."""
         self.panel = panel
         self._stack.addWidget(panel)
-        self._stack.setCurrentWidget(panel)
+        self._show_panel(not self.visibleRegion().isEmpty())
+
+    def _show_panel(self, seen: bool) -> None:
+        """Put a panel that draws away while another tab is in front: to Qt it would be visible."""
+        if self.panel is not None:
+            self._stack.setCurrentWidget(self.panel if seen or not isinstance(self.panel, Panel) else self._note)
 
     def sizeHint(self) -> QSize:
         """The size that the dock begins with."""

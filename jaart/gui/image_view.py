@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from qtpy.QtCore import QPointF, QRectF, QSize, Qt, QTimer
-from qtpy.QtGui import QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
+from qtpy.QtGui import QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPixmap, QResizeEvent, QWheelEvent
 from qtpy.QtWidgets import QApplication, QWidget
 
 from jaart.core.camera import Camera
@@ -35,6 +35,7 @@ class ImageView(QWidget):
         self.model, self.image = model, QImage()
         self._results: tuple[Any, ...] = (None, None, None)
         self._values: tuple[Any, ...] = ()
+        self._scaled: tuple[tuple[Any, ...], QPixmap] = (), QPixmap()
         self.hovered: tuple[int, int] | None = None
         self._pressed: QPointF | None = None
         self._last = QPointF()
@@ -51,13 +52,16 @@ class ImageView(QWidget):
         return QSize(820, 640)
 
     def refresh(self) -> None:
-        """Colour the hits again, if anything that their colours depend on has changed."""
-        model, hits = self.model, self.model.hits
+        """Colour the hits again, if anything that their colours depend on has changed, and paint them at once."""
+        model, hits, before = self.model, self.model.hits, self.image
         if hits is None:
             self.image, self._values = QImage(), ()
         elif model.quality is not None or not model.map.endswith("_error") or not self._was_exact():
             self._colour(hits)
-        self.update()
+        if self.image is not before:
+            self.repaint()  # before the panels that tell its numbers
+        else:
+            self.update()
 
     def _colour(self, hits: Hits) -> None:
         from jaart.core.picture import plain
@@ -113,15 +117,28 @@ class ImageView(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw the picture and what lies over it."""
         painter = QPainter(self)
-        painter.fillRect(self.rect(), theme.colour(self.model.theme, "view"))
+        painter.drawPixmap(0, 0, self._below())
         if self.image.isNull():
             painter.setPen(theme.colour(self.model.theme, "weak"))
             painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, self._nothing())
             return
-        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-        painter.drawImage(self.picture_area(), self.image)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_over(painter)
+
+    def _below(self) -> QPixmap:
+        """The picture as large as it stands in the view: to bring it to that size takes longer than all above it."""
+        ratio = self.devicePixelRatioF()
+        key = self.image.cacheKey(), self.size(), self.model.size, ratio, self.model.theme
+        if key != self._scaled[0]:
+            ground = QPixmap(self.size() * ratio)
+            ground.setDevicePixelRatio(ratio)
+            ground.fill(theme.colour(self.model.theme, "view"))
+            painter = QPainter(ground)
+            painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+            painter.drawImage(self.picture_area(), self.image)
+            painter.end()
+            self._scaled = key, ground
+        return self._scaled[1]
 
     def _nothing(self) -> str:
         return "Drop a file here, or open one" if self.model.idle else "The first picture is being made …"

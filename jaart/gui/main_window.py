@@ -5,12 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from qtpy.QtCore import QSize, Qt, Signal
-from qtpy.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QShowEvent
+from qtpy.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QResizeEvent, QShowEvent
 from qtpy.QtWidgets import QApplication, QFileDialog, QMainWindow, QMessageBox, QTabWidget, QWidget
 
 from jaart.core.errors import FileError
 from jaart.gui import theme
 from jaart.gui.actions import Actions
+from jaart.gui.arrangement import Arrangement
 from jaart.gui.docks import LATE, Area, Late, Loader, PanelDock
 from jaart.gui.form import column
 from jaart.gui.image_view import ImageView
@@ -90,20 +91,14 @@ class MainWindow(QMainWindow):
         self.setCorner(Qt.Corner.BottomLeftCorner, Area.LeftDockWidgetArea)
         self.setCorner(Qt.Corner.BottomRightCorner, Area.RightDockWidgetArea)
         self.setTabPosition(Area.AllDockWidgetAreas, QTabWidget.TabPosition.North)
-        self._dock("Parameters", Area.LeftDockWidgetArea, QSize(300, 600)).set_panel(Parameters(self.model))
+        self._dock("Parameters", QSize(300, 600)).set_panel(Parameters(self.model))
         for late in LATE:
-            self._dock(late.title, late.area, QSize(440 if late.area == Area.RightDockWidgetArea else 600, late.height))
-        self._dock("Messages", Area.BottomDockWidgetArea, QSize(600, 240)).set_panel(Log(self.model))
-        self.tabifyDockWidget(self.docks["Statistics"], self.docks["Messages"])
-        self.docks["Statistics"].raise_()
-        for title in ("Steps", "Statistics", "Messages"):
-            self.docks[title].setTitleBarWidget(QWidget())
-        steps = self.docks["Steps"]
-        steps.setMaximumHeight(LATE[0].height)
+            self._dock(late.title, QSize(440 if late.area == Area.RightDockWidgetArea else 600, late.height))
+        self._dock("Messages", QSize(600, 240)).set_panel(Log(self.model))
+        self.arrangement = Arrangement(self, self.docks)
 
-    def _dock(self, title: str, area: Area, size: QSize) -> PanelDock:
+    def _dock(self, title: str, size: QSize) -> PanelDock:
         dock = self.docks[title] = PanelDock(title, self, size)
-        self.addDockWidget(area, dock)
         return dock
 
     def _connect(self) -> None:
@@ -142,11 +137,13 @@ class MainWindow(QMainWindow):
         super().showEvent(event)
         if not self._shown:
             self._shown = True
-            side = [self.docks["Parameters"], self.docks[LATE[1].title]]
-            self.resizeDocks(side, [300, 470], Qt.Orientation.Horizontal)
-            columns = [self.docks[late.title] for late in LATE[1:4]]
-            self.resizeDocks(columns, [late.height for late in LATE[1:4]], Qt.Orientation.Vertical)
-            self.resizeDocks([self.docks["Statistics"]], [LATE[4].height], Qt.Orientation.Vertical)
+            self.arrangement.fit(anew=True)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Arrange the docks anew where there is much more or less room for them."""
+        super().resizeEvent(event)
+        if self._shown:
+            self.arrangement.fit()
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         """Take files."""

@@ -6,11 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 from qtpy.QtCore import QObject, Signal
 
+from jaart.core.errors import Cancelled
 from jaart.core.records import Hits, Quality
 from jaart.gui.worker import Job, Worker
 
 if TYPE_CHECKING:
     from jaart.gui.model import SceneModel
+
+#: A picture is painted and rests so long before it is measured [s].
+REST = 0.05
 
 
 class Measurer(QObject):
@@ -48,4 +52,6 @@ class Measurer(QObject):
 def _measured(job: Job, hits: Hits, scene: Any) -> tuple[Any, Quality | None]:
     from jaart.core.quality import quality
 
+    if job.cancel.wait(REST):
+        raise Cancelled("a newer picture came")
     return hits.t, quality(hits, scene, job.cancel, job.progress)

@@ -49,6 +49,7 @@ class SceneModel(Look):
     trace_changed = Signal()
     step_changed = Signal()
     progressed = Signal(float)
+    staged = Signal(str, float)
     begun = Signal()
     settled = Signal()
     failed = Signal(str)
@@ -106,7 +107,7 @@ class SceneModel(Look):
         """Read a scene; when it cannot be read, `failed` says why and the old scene stays."""
         settings, base, before = self.settings, preset(self.preset), self.scene
         self.said.emit(f"Reading {source} …")
-        self._worker.submit("open", lambda job: tasks.read(source, frame, settings, base, before),
+        self._worker.submit("open", lambda job: tasks.read(job, source, frame, settings, base, before),
                             lambda opened: self._opened(opened, camera))
 
     def choose_preset(self, name: str) -> None:
@@ -140,12 +141,12 @@ class SceneModel(Look):
         self._set_fault(None)
         if self.hits is not None:
             self.hits = results.with_settings(self.hits, settings)
-        self.settings_changed.emit()
         if self.scene is not None and (refused or settings.key("rays") != old.key("rays")):
             self._keep_view()
-            self._render()
+            self._render()  # before the panels are told: rays are traced meanwhile
         elif settings.key("trace") != old.key("trace"):
             self._trace()
+        self.settings_changed.emit()
 
     def set_camera(self, camera: Camera, dragging: bool = False) -> None:
         """Look from elsewhere; while dragging, smaller pictures are made so that they keep up."""
@@ -168,8 +169,8 @@ class SceneModel(Look):
     def pick(self, x: int, y: int) -> None:
         """Trace the ray through pixel (x, y); a pixel outside the picture is moved to its edge."""
         self.picked = (min(max(x, 0), self.size[0] - 1), min(max(y, 0), self.size[1] - 1))
-        self.picked_changed.emit()
         self._trace()
+        self.picked_changed.emit()
 
     def clear_pick(self) -> None:
         """Forget the picked ray."""
@@ -242,10 +243,10 @@ class SceneModel(Look):
                             self._made, self._show, brief=dragging)
 
     def _made(self, made: Made) -> None:
-        if made.known != self.known:
-            self.known = made.known
-            self.known_changed.emit()
+        known, self.known = self.known, made.known
         self._show(made.hits)
+        if made.known != known:
+            self.known_changed.emit()
 
     def show_quality(self, quality: Quality | None) -> None:
         """Take the errors of the picture that is shown."""

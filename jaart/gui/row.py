@@ -77,6 +77,8 @@ class Row(QWidget):
 
     def refuse(self, message: str) -> None:
         """Show why a value is not taken, or nothing."""
+        if message == self.fault.text():
+            return
         self.fault.setText(message)
         self.fault.setVisible(bool(message))
         for box in (self.label, *self.findChildren(QLineEdit)):

@@ -19,8 +19,8 @@ class Status(QStatusBar):
         self.setSizeGripEnabled(False)
         self.bar = QProgressBar(maximum=100, textVisible=False)
         self.bar.setFixedSize(120, 8)
-        self.state = QLabel()
-        self.figures = QLabel(objectName="figures")
+        self.state = QLabel(minimumWidth=1)
+        self.figures = QLabel(objectName="figures", minimumWidth=1)
         self.figures.setFont(tabular(self.figures.font()))
         self.setContentsMargins(8, 0, 8, 0)
         self.addWidget(self.bar)
@@ -28,14 +28,15 @@ class Status(QStatusBar):
         self.addWidget(self.state, 1)
         self.addPermanentWidget(self.figures)
         self._late = QTimer(self, singleShot=True, interval=200)
-        self._late.timeout.connect(lambda: self._progress(0.0))
+        self._late.timeout.connect(self._take_long)
+        self._stage = "", 0.0
+        model.staged.connect(self._staged)
         model.progressed.connect(self._progress)
         model.measurer.progressed.connect(lambda share: self._progress(share, "Measuring errors"))
         model.said.connect(self.state.setText)
         model.hits_changed.connect(self.refresh)
         model.settled.connect(self._settled)
-        for signal in (model.settings_changed, model.camera_changed):
-            signal.connect(self._late.start)
+        model.begun.connect(self._late.start)
         self._settled()
 
     def refresh(self) -> None:
@@ -46,15 +47,35 @@ class Status(QStatusBar):
             self.figures.setText("")
 
     def _progress(self, share: float, what: str = "Tracing rays") -> None:
-        if not self.model.computing:
+        if not self.model.computing or self._late.isActive():
             return
         self.bar.setVisible(share < 1)
-        self.bar.setValue(round(100 * share))
+        self._show_share(share)
         if share:
             self.state.setText(f"{what} … {100 * share:.0f} %")
 
+    def _show_share(self, share: float, known: bool = True) -> None:
+        """Move the bar to a share of the work, or to and fro where nobody knows it."""
+        self.bar.setMaximum(100 if known else 0)
+        self.bar.setValue(round(100 * share))
+
+    def _staged(self, what: str, share: float) -> None:
+        """Note what is made before rays are traced; tell it once it takes long."""
+        self._stage = what, share
+        if what and self.model.computing and not self._late.isActive():
+            self.bar.show()
+            self._show_share(share, known=share > 0)
+            self.state.setText(f"{what[0].upper()}{what[1:]} …" + (f" {100 * share:.0f} %" if share else ""))
+
+    def _take_long(self) -> None:
+        if self._stage[0]:
+            self._staged(*self._stage)
+        else:
+            self._progress(0.0)
+
     def _settled(self) -> None:
         self._late.stop()
+        self._stage = "", 0.0
         self.bar.hide()
         width, height = self.model.size
         self.state.setText(f"Picture of {width} × {height} rays" if self.model.complete else "")

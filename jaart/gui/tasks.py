@@ -12,6 +12,7 @@ from jaart.core.camera import Camera
 from jaart.core.records import Hits, Trace
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings
+from jaart.core.telling import told
 from jaart.gui.navigation import Bounds
 from jaart.gui.worker import Job
 
@@ -52,18 +53,19 @@ class Made:
     known: Known
 
 
-def read(source: str | PathLike[str], frame: int | None, settings: Settings, base: Settings,
+def read(job: Job, source: str | PathLike[str], frame: int | None, settings: Settings, base: Settings,
          before: Scene | None) -> Opened:
-    """A scene and settings for it. Raises FileError for a file that cannot be read."""
+    """A scene and settings for it. Raises FileError for a file that cannot be read, Cancelled once it is unwanted."""
     from jaart.core import prepare
     from jaart.core.groups.surface import evaluates
     from jaart.core.io import load
     from jaart.gui.suit import suited
 
-    scene = load(source, frame)
-    settings, changed = suited(scene, settings, base, before)
-    if scene.kind != "cloud" and evaluates(settings):
-        prepare.surfels(scene, settings)
+    with told(job.watch):
+        scene = load(source, frame)
+        settings, changed = suited(scene, settings, base, before)
+        if scene.kind != "cloud" and evaluates(settings):
+            prepare.surfels(scene, settings)
     return Opened(scene, bounds(scene, settings), settings, changed)
 
 
@@ -85,8 +87,9 @@ def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tu
     if needs_compile(scene, settings):
         job.say("Compiling kernels that are needed for the first time on this machine; this takes some seconds …")
     values = check(scene, settings)
-    hits = render(scene, settings, camera, size, progress=None if dragging else job.progress, cancel=job.cancel,
-                  picture=None if dragging else job.partial)
+    with told(job.watch):
+        hits = render(scene, settings, camera, size, progress=None if dragging else job.progress, cancel=job.cancel,
+                      picture=None if dragging else job.partial)
     return Made(hits, _known(scene, settings, values))
 
 

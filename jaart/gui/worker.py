@@ -17,13 +17,16 @@ log = logging.getLogger("jaart")
 
 #: Kinds of jobs, the most urgent first.
 KINDS = ("open", "picture", "trace", "figure", "plan")
+#: Those that nobody waits for once they are cancelled: a file may be read for long without a chance to stop.
+LEFT = ("open",)
 
 
 class Job:
     """Work to be done in the worker's thread; `done` and `partial` are called in the window's.
 
     kind: one of KINDS; work(job) -> result: may call job.progress and job.partial and give job.cancel on;
-    brief: so short that it runs to its end even when newer work waits.
+    brief: so short that it runs to its end even when newer work waits. Done with `told(job.watch)`, work says which
+    stage it makes and stops wherever it does.
     """
 
     def __init__(self, worker: Worker, kind: str, work: Callable[[Job], Any], done: Callable[[Any], None],
@@ -45,6 +48,15 @@ class Job:
             self._told = now
             self._post(self, "progress", done / max(total, 1))
 
+    def watch(self, stage: str, done: int, total: int) -> None:
+        """Tell which stage is made and how far it is. Raises Cancelled when nobody wants it any more."""
+        if self.cancel.is_set():
+            raise Cancelled(f"{stage} was cancelled")
+        now = time.monotonic()
+        if not total or now - self._told > 0.1:
+            self._told = now if total else self._told
+            self._post(self, "stage", (stage, done / total if total else 0.0))
+
     def say(self, text: str) -> None:
         """Tell what goes on."""
         self._post(self, "said", text)
@@ -60,10 +72,12 @@ class Job:
 class Worker(QObject):
     """Runs jobs one after the other in a thread of its own and reports in the window's thread.
 
-    refused: the settings of a job make no sense; failed: anything else that went wrong.
+    refused: the settings of a job make no sense; failed: anything else that went wrong; staged: which stage is made
+    and how much of it is done, "" and 0 where nobody knows.
     """
 
     progressed = Signal(float)
+    staged = Signal(str, float)
     failed = Signal(str)
     refused = Signal(str)
     said = Signal(str)
@@ -80,6 +94,9 @@ class Worker(QObject):
         self._change = threading.Condition()
         self._garbage = GarbageCollector(self)
         self.posted.connect(self._deliver, Qt.ConnectionType.QueuedConnection)
+        self._begin()
+
+    def _begin(self) -> None:
         self._thread = threading.Thread(target=self._loop, name="jaart worker", daemon=True)
         self._thread.start()
 
@@ -95,7 +112,7 @@ class Worker(QObject):
         with self._change:
             self._drop(kind)
             if self._running is not None and self._running.kind == kind:
-                self._running.supersede()
+                self._leave() if kind in LEFT else self._running.supersede()
             for other in self._open:
                 other.replaced |= other.kind == kind
             self._waiting[kind] = job
@@ -110,7 +127,15 @@ class Worker(QObject):
             for job in self._open:
                 job.forgotten |= job.kind == kind
             if self._running is not None and self._running.kind == kind:
-                self._running.cancel.set()
+                self._leave() if kind in LEFT else self._running.cancel.set()
+
+    def _leave(self) -> None:
+        """Let the running job end by itself, unheard, and go on in a new thread: what it does may not be stoppable."""
+        job, self._running = self._running, None
+        assert job is not None
+        job.cancel.set()
+        self.posted.emit(job, "cancelled", None)
+        self._begin()
 
     def cancel_all(self) -> None:
         """Stop what runs and forget what waits."""
@@ -137,9 +162,9 @@ class Worker(QObject):
         while (job := self._next()) is not None:
             what, result = _outcome(job)
             with self._change:
-                self._running = None
-                if self._stop:
+                if self._stop or self._running is not job:
                     return
+                self._running = None
             self.posted.emit(job, what, result)
 
     def _next(self) -> Job | None:
@@ -171,6 +196,8 @@ class Worker(QObject):
             self.said.emit(result)
         elif what == "progress":
             self.progressed.emit(result)
+        elif what == "stage":
+            self.staged.emit(*result)
 
 
 def _outcome(job: Job) -> tuple[str, Any]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -149,33 +147,19 @@ def _strips(axes: Axes, ways: Array, low: float, high: float, **look: Any) -> No
 def _cells(axes: Axes, trace: Trace, colours: Theme) -> None:
     from matplotlib.collections import LineCollection
 
+    from jaart.plot.strip import Strip
+
     ways = scale.stretches(trace)
-    left, right = axes.get_xlim()  # hatching is slow, so only what a zoom of twice the width may show
-    seen = (ways[:, 1] > 1.5 * left - 0.5 * right) & (ways[:, 0] < 1.5 * right - 0.5 * left)
     _strips(axes, ways[::2], 0, 1, facecolor=colours.band, zorder=0)
     borders = np.stack(np.broadcast_arrays(trace.borders[:, None], (0.0, 1.0)), axis=2)
     axes.add_collection(LineCollection(list(borders), transform=axes.get_xaxis_transform(), color=colours.grid,
                                        linewidth=0.7, zorder=0.5), autolim=False)
+    falling = np.arange(len(ways)) % 2 == 1
     for full in (False, True):
-        for odd, hatch in enumerate(("/////", "\\\\\\\\\\")):
-            chosen = ways[seen & (np.arange(len(ways)) % 2 == odd) & (trace.with_surfel == full)]
-            edge = colours.full_cell if full else colours.cell
-            if len(chosen):
-                with _hatching(1.7 if full else 0.4):
-                    _strips(axes, chosen, 0, _STRIP, zorder=2, hatch=hatch, edgecolor=edge, facecolor=colours.face,
-                            linewidth=1.8 if full else 0.4)
-
-
-@contextmanager
-def _hatching(width: float) -> Iterator[None]:
-    """What is made within has hatches of a width in points; matplotlib's rc_context copies all its settings instead."""
-    from matplotlib import rcParams
-
-    before, rcParams["hatch.linewidth"] = rcParams["hatch.linewidth"], width
-    try:
-        yield
-    finally:
-        rcParams["hatch.linewidth"] = before
+        chosen = trace.with_surfel == full
+        if chosen.any():
+            axes.add_artist(Strip(ways[chosen], falling[chosen], _STRIP, colours.face,
+                                  colours.full_cell if full else colours.cell, *((1.8, 1.7) if full else (0.4, 0.4))))
 
 
 def _balls(axes: Axes, trace: Trace, colours: Theme) -> None:

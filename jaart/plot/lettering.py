@@ -1,10 +1,14 @@
-"""Words that are rasterised once and then copied: to lay out and render text takes most of the drawing of a figure."""
+"""Words that are rasterised once and then copied: to lay out and render text takes most of the drawing of a figure.
+
+A text is put together of its words, digits and formulas, so that new numbers take nothing new.
+"""
 
 from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +22,8 @@ from numpy.typing import NDArray
 
 #: Room around the letters of a raster [pixels]; how far a halo reaches [points].
 _ROOM, _HALO = 3, 1.0
+#: What is rasterised as a whole: a formula, a digit, a word, a space.
+_PIECE = re.compile(r"\$[^$]*\$|[\d ]|[^\d $]+")
 
 
 @dataclass(frozen=True)
@@ -34,19 +40,33 @@ class Look:
 
 def measure(look: Look, dpi: float) -> tuple[float, float, float]:
     """Width, height and depth below the line of a text as it is read [pixels]."""
-    return _measured(look.text, look.size, look.weight, dpi)
+    found = [_measured(piece.text, piece.size, piece.weight, dpi) for piece in pieces(look)]
+    width, above, depth = (sum(w for w, _, _ in found), max((h - d for _, h, d in found), default=0.0),
+                           max((d for _, _, d in found), default=0.0))
+    return width, above + depth, depth
 
 
 def put(renderer: Any, look: Look, x: float, y: float) -> None:
     """Draw a text whose first letter stands at (x, y), pixels from the lower left."""
     gc = renderer.new_gc()
     if isinstance(renderer, RendererAgg):
-        raster, left, below = _raster(look, renderer.dpi)
-        renderer.draw_image(gc, round(x) - left, round(y) - below, raster)
+        for piece in pieces(look):
+            if piece.text != " ":
+                raster, left, below = _raster(piece, renderer.dpi)
+                renderer.draw_image(gc, round(x) - left, round(y) - below, raster)
+            x += measure(piece, renderer.dpi)[0]
     else:
         _, height = renderer.get_canvas_width_height()
         _write(renderer, gc, look, x, height - y if renderer.flipy() else y, 90.0 if look.upright else 0.0)
     gc.restore()
+
+
+@functools.lru_cache(maxsize=2048)
+def pieces(look: Look) -> list[Look]:
+    """The parts of a text that are rasterised one by one; with a halo, or read from below, it is one."""
+    if look.halo or look.upright:
+        return [look]
+    return [replace(look, text=text) for text in _PIECE.findall(look.text)]
 
 
 @functools.lru_cache(maxsize=4096)

@@ -112,7 +112,8 @@ def _ends(axes: Axes, statistics: Statistics, colours: Theme, notes: list[str]) 
     """End states in the colours that the picture's status map has."""
     status = sorted(statistics.status.items(), key=lambda item: item[1])
     style.dress(axes, colours)
-    style.title(axes, colours, f"{_number(statistics.hits)} of {_number(statistics.rays)} rays hit")
+    left = _NAMES - _LEFT if axes.get_position().x0 < 0.6 else 0.0  # below the others, else beside them
+    style.title(axes, colours, f"{_number(statistics.hits)} of {_number(statistics.rays)} rays hit", left=left)
     names, counts = [style.OUTCOMES[n] for n, _ in status], [c for _, c in status]
     bars = axes.barh(range(len(names)), counts, height=0.7,
                      color=[np.divide(COLOURS[n], 255.0) for n, _ in status])

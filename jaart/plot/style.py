@@ -113,14 +113,17 @@ def line(axes: Axes, x: Any, y: Any, **look: Any) -> None:
     axes.add_artist(Line2D(x, y, **look))
 
 
-def title(axes: Axes, theme: Theme, first: str, second: str = "", raised: bool = False) -> None:
-    """One or two lines above an axes, flush left; raised: leave the lower line to something else."""
+def title(axes: Axes, theme: Theme, first: str, second: str = "", raised: bool = False, left: float = 0.0) -> None:
+    """One or two lines above an axes, flush left or so many inches further left.
+
+    raised: leave the lower line to something else.
+    """
     from jaart.plot.lettering import Words
 
     lines = [(second, SMALL, theme.muted, "normal")] if second else []
     lines.append((first, TEXT, theme.text, "bold"))
     for i, (text, size, colour, weight) in enumerate(lines):
-        axes.add_artist(Words((0, 1), text, colour, size, (0, 4 + 12 * (i + raised)), weight, share=True))
+        axes.add_artist(Words((0, 1), text, colour, size, (-72 * left, 4 + 12 * (i + raised)), weight, share=True))
 
 
 def key(axes: Axes, theme: Theme, lines: list[tuple[str, dict[str, Any]]]) -> None:

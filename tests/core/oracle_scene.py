@@ -15,7 +15,7 @@ from jaart.core.chosen import Chosen
 from jaart.core.scene import Model, Scene
 from jaart.core.settings import Settings
 from jaart.core.shapes import Box, Sphere
-from tests import naive
+from tests import naive_cells
 from tests.oracle import energies, neighbourhoods, searches, surfaces
 from tests.oracle.normals import NORMALS
 from tests.oracle.projection import project
@@ -164,7 +164,7 @@ class Stretch:
 
 def stretches(oracle: Oracle, o: Vector, d: Vector) -> list[Stretch]:
     """The cells that a ray crosses."""
-    crossed = naive.crossed_cells(o, d, oracle.extent)
+    crossed = naive_cells.crossed_cells(o, d, oracle.extent)
     return [Stretch(c.cell, float(c.enter), float(c.leave)) for c in crossed]
 
 

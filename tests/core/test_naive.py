@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from tests import naive
+from tests import naive, naive_cells
 from tests.naive import Cloud, Rules, Search
 
 UP = (0.0, 0.0, 1.0)
@@ -74,28 +74,28 @@ def test_cell_ball_is_about_the_cells_centre() -> None:
 
 
 def test_crossed_cells_of_a_slanted_ray() -> None:
-    cells = naive.crossed_cells((-1.0, 0.25, 0.5), (1.0, 0.5, 0.0), (2, 2, 2))
+    cells = naive_cells.crossed_cells((-1.0, 0.25, 0.5), (1.0, 0.5, 0.0), (2, 2, 2))
     assert [c.cell for c in cells] == [(0, 0, 0), (0, 1, 0), (1, 1, 0)]
     assert [c.enter for c in cells] == [Fraction(1), Fraction(3, 2), Fraction(2)]
     assert cells[-1].leave == 3
 
 
 def test_a_diagonal_ray_crosses_few_cells_and_touches_many() -> None:
-    cells = naive.crossed_cells((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (2, 2, 2))
+    cells = naive_cells.crossed_cells((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (2, 2, 2))
     assert [c.cell for c in cells] == [(0, 0, 0), (1, 1, 1)]
-    assert len(naive.touched_cells((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (2, 2, 2))) == 8
+    assert len(naive_cells.touched_cells((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (2, 2, 2))) == 8
 
 
 def test_a_ray_in_a_face_belongs_to_the_upper_cells() -> None:
-    cells = naive.crossed_cells((1.0, 0.5, 5.0), (0.0, 0.0, -1.0), (2, 1, 2))
+    cells = naive_cells.crossed_cells((1.0, 0.5, 5.0), (0.0, 0.0, -1.0), (2, 1, 2))
     assert [c.cell for c in cells] == [(1, 0, 1), (1, 0, 0)]
-    assert naive.touched_cells((1.0, 0.5, 5.0), (0.0, 0.0, -1.0), (2, 1, 2)) == {
+    assert naive_cells.touched_cells((1.0, 0.5, 5.0), (0.0, 0.0, -1.0), (2, 1, 2)) == {
         (0, 0, 0), (0, 0, 1), (1, 0, 0), (1, 0, 1)}
-    assert naive.crossed_cells((2.0, 0.5, 5.0), (0.0, 0.0, -1.0), (2, 1, 2)) == []
+    assert naive_cells.crossed_cells((2.0, 0.5, 5.0), (0.0, 0.0, -1.0), (2, 1, 2)) == []
 
 
 def test_a_ray_from_inside_begins_at_its_origin() -> None:
-    cells = naive.crossed_cells((1.5, 0.5, 0.5), (-1.0, 0.0, 0.0), (3, 1, 1))
+    cells = naive_cells.crossed_cells((1.5, 0.5, 0.5), (-1.0, 0.0, 0.0), (3, 1, 1))
     assert [(c.cell, c.enter) for c in cells] == [((1, 0, 0), 0), ((0, 0, 0), Fraction(1, 2))]
 
 

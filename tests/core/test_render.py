@@ -17,7 +17,18 @@ from jaart.core.render import render
 from jaart.core.scene import Model, Scene, frozen
 from jaart.core.settings import Settings
 from jaart.core.shapes import Box
-from jaart.core.tiles import LEAST, STEPS, TILE, in_blocks, pixels_at, tiles
+from jaart.core.tiles import (
+    LEAST,
+    LONGEST,
+    SHORTEST,
+    STEPS,
+    TILE,
+    TILE_SECONDS,
+    in_blocks,
+    pixels_at,
+    tile_of,
+    tiles,
+)
 
 COLUMNS = ("t", "point", "normal", "energy", "off_centre", "iterations", "evaluations", "neighbours", "cells",
            "status")
@@ -63,6 +74,15 @@ def test_tiles_hold_every_ray_once_and_some_are_there_for_each_thread(rays: int,
     assert np.array_equal(np.concatenate([np.arange(0), *made]), np.arange(rays))
     assert all(len(tile) <= TILE for tile in made)
     assert len(made) >= threads or rays < threads * LEAST
+
+
+@pytest.mark.parametrize("seconds", [0.0, 1e-9, 2.5e-7, 1e-5, 1.0])
+def test_a_tile_is_whole_blocks_and_shorter_where_rays_take_longer(seconds: float) -> None:
+    length = tile_of(seconds)
+    assert length % 64 == 0
+    assert SHORTEST <= length <= LONGEST
+    assert length <= tile_of(seconds / 2)
+    assert length * seconds <= TILE_SECONDS or length == SHORTEST
 
 
 @pytest.mark.parametrize("size", [(1, 1), (8, 8), (9, 17), (3, 40)])

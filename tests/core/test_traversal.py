@@ -20,7 +20,7 @@ from jaart.core.settings import Settings
 from jaart.core.shapes import Sphere
 from jaart.core.tiles import columns_for
 from jaart.core.tracers import NO_LOG, LatticeTracer
-from tests import naive
+from tests import naive_cells
 
 Array = NDArray[np.float64]
 Vector = Sequence[float]
@@ -48,7 +48,7 @@ def of_some_length(origin: Vector, direction: Vector, shape: Cell = SHAPE) -> li
 def brute_force(origin: Vector, direction: Vector, shape: Cell = SHAPE) -> list[Cell]:
     """The cells crossed; the far faces of the lattice belong to its last cells."""
     inside = [n - 0.5 if d == 0 and o == n else o for o, d, n in zip(origin, direction, shape, strict=True)]
-    return [c.cell for c in naive.crossed_cells(inside, direction, shape)]
+    return [c.cell for c in naive_cells.crossed_cells(inside, direction, shape)]
 
 
 def test_an_axis_ray_from_a_face() -> None:
@@ -102,7 +102,7 @@ def test_random_rays_cross_what_brute_force_finds() -> None:
     for _ in range(400):
         origin = (rng.uniform(-0.5, 1.5, 3) * SHAPE).tolist()
         direction = rng.normal(size=3).tolist()
-        expected = naive.crossed_cells(origin, direction, SHAPE)
+        expected = naive_cells.crossed_cells(origin, direction, SHAPE)
         cells, borders = crossed(origin, direction)
         assert cells == [c.cell for c in expected]
         for c, enter, leave in zip(expected, borders, borders[1:], strict=False):
@@ -121,7 +121,7 @@ towards = st.sampled_from([0.0, -0.0, 1.0, -1.0, 2.0, -2.0, 0.5, -0.5])
 def test_rays_in_faces_edges_and_corners_cross_what_brute_force_finds(
         origin: tuple[float, float, float], direction: tuple[float, float, float]) -> None:
     assert of_some_length(origin, direction) == brute_force(origin, direction)
-    touched = naive.touched_cells(origin, direction, SHAPE)
+    touched = naive_cells.touched_cells(origin, direction, SHAPE)
     assert set(crossed(origin, direction)[0]) <= touched
 
 
@@ -185,7 +185,7 @@ def test_skipping_empty_space_starts_where_stepping_through_it_does(seed: int) -
         assert skipped == stepped
         found += len(skipped)
         if kind % 12 == 0:
-            expected = naive.crossed_cells(origin.tolist(), direction.tolist(), shape)
+            expected = naive_cells.crossed_cells(origin.tolist(), direction.tolist(), shape)
             assert [s[1:] for s in skipped] == [c.cell for c in expected if c.cell in surfel_cells]
     assert found > 300
 

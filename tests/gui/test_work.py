@@ -86,6 +86,7 @@ def test_a_panel_that_is_closed_draws_nothing_until_it_is_shown(qtbot, window, m
     assert [len(calls) for calls in drawn] == [0, 0, 0, 0]
     for dock in closed:
         dock.show()
+        dock.raise_()
     qtbot.waitUntil(lambda: all(drawn), timeout=PATIENCE)
 
 

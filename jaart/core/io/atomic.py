@@ -10,6 +10,7 @@ from os import PathLike
 from pathlib import Path
 
 from jaart.core.errors import FileError
+from jaart.core.unfinished import PARTS, TURN
 
 
 @contextmanager
@@ -22,17 +23,21 @@ def replacing(path: str | PathLike[str]) -> Iterator[Path]:
     target = Path(path)
     temporary: Path | None = None
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{target.stem}-", suffix=target.suffix, dir=target.parent)
+        with TURN:
+            handle, name = tempfile.mkstemp(prefix=f".{target.stem}-", suffix=target.suffix, dir=target.parent)
+            temporary = Path(name)
+            PARTS.add(temporary)
         os.close(handle)
-        temporary = Path(name)
         yield temporary
         temporary.chmod(_mode(target))
-        temporary.replace(target)
+        with TURN:
+            temporary.replace(target)
     except OSError as error:
         raise FileError(target, f"cannot be written: {error.strerror or error}") from error
     finally:
         if temporary is not None:
             temporary.unlink(missing_ok=True)
+            PARTS.discard(temporary)
 
 
 def _mode(target: Path) -> int:

@@ -19,9 +19,11 @@ from jaart.core.kernels.records import Array, Numbers
 #: A pool. GATHERER: address of the kernel that gathers; EMPTY: that of a block without surfels; AT: where the next
 #: block goes; LEFT: bytes from there on; NEED: of a block that did not fit; ROOM: surfels that the scratch is for;
 #: MORE: of a place that has more; HEAP: 1 where a heap was full; GATHERED, FITTED: places so far, and those whose
-#: centre is kept; BYTES: of all blocks; PARTS: columns; KEPT: numbers kept of a centre; from SOURCE on: what the
-#: gatherer needs to know.
-(GATHERER, EMPTY, AT, LEFT, NEED, ROOM, MORE, HEAP, GATHERED, FITTED, BYTES, PARTS, KEPT, SOURCE) = range(14)
+#: centre is kept; BYTES: of all blocks; PARTS: columns; KEPT: numbers kept of a centre; ASKED, ROWS: addresses of
+#: what says whether a cell's centre is kept, and of what is (first_guess.py); from SOURCE on: what the gatherer needs
+#: to know.
+(GATHERER, EMPTY, AT, LEFT, NEED, ROOM, MORE, HEAP, GATHERED, FITTED, BYTES, PARTS, KEPT, ASKED, ROWS,
+ SOURCE) = range(16)
 #: Words of a pool.
 POOL_SIZE = SOURCE + 12
 _WORD = 8
