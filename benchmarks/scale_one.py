@@ -20,7 +20,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 import jaart
-from benchmarks.footprint import MIB, peak, resident
+from benchmarks.footprint import MIB, highest, peak, resident
 from benchmarks.scale_data import scene_of
 from jaart.core import prepare
 from jaart.core.places import Places, places_of
@@ -56,7 +56,7 @@ def measured(kind: str, size: int, picture: tuple[int, int]) -> dict[str, Any]:
             "first_s": seconds + first.ray_s,
             "ray_us": 1e6 * statistics.median(h.ray_s for h in hits) / len(first),
             "evaluations": int(first.evaluations.sum()) / max(1, int(first.hit.sum())), "hits": int(first.hit.sum()),
-            "touched": places, "touched_bytes": place_bytes,
+            "touched": places, "touched_bytes": place_bytes, "whole_bytes": highest(),
             "arrays": {name: round(n / items, 1) for name, n in arrays.items() if n / items >= NAMED}}
 
 
