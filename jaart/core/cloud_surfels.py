@@ -20,6 +20,8 @@ from jaart.core.tree import ball_tree
 
 #: A grid over the points has at most so many cells along an axis.
 MOST_CELLS = 1 << 20
+#: In so many rows of cells points are counted one by one.
+FEW_ROWS = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,16 +68,30 @@ def cloud_of(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
         radii[:] = values.h
     reach = radii + values.radius if values.neighbourhood == "ball" else _reach(scene, settings.k, kept, radii)
     what = f"k = {settings.k}" if math.isinf(values.radius) else f"radius = {values.radius:g}"
-    _check(scene, centres, reach, len(normals) > 0, what)
-    return Cloud(_grid(points, normals, float(np.median(reach))), centres, radii, reach,
-                 ball_tree(centres, radii), cloud.offset(scene))
+    grid = _grid(points, normals, float(np.median(reach)))
+    _check(grid, centres, reach, what)
+    return Cloud(grid, centres, radii, reach, ball_tree(centres, radii), cloud.offset(scene))
 
 
-def _check(scene: Scene, centres: Array, reach: Array, normals: bool, what: str) -> None:
+def _check(grid: Grid, centres: Array, reach: Array, what: str) -> None:
     """Raise SettingsError where the points near the balls that a picture asks for would not fit into memory."""
     some = slice(None, None, max(len(centres) // COUNTED, 1))
-    near = cloud.kd_tree(scene).query_ball_point(centres[some], reach[some], return_length=True).tolist()
-    check_near(near, len(centres), 6 if normals else 3, what)
+    near = [_near(grid, *ball) for ball in zip(centres[some], reach[some].tolist(), strict=True)]
+    check_near(near, len(centres), 6 if len(grid.normals) else 3, what)
+
+
+def _near(grid: Grid, centre: Array, reach: float) -> int:
+    """How many points a ball holds; of one that reaches across many cells, how many those do."""
+    low, high = (np.clip((centre + way - grid.low) // grid.edge, 0, grid.shape - 1).astype(np.int64)
+                 for way in (-reach, reach))
+    if (high - low + 1.0)[:2].prod() > len(grid.keys):
+        return len(grid.keys)
+    row = np.add.outer(np.arange(low[0], high[0] + 1) * grid.shape[1], np.arange(low[1], high[1] + 1)).ravel()
+    first, end = np.searchsorted(grid.keys, (row * grid.shape[2] + low[2], row * grid.shape[2] + high[2] + 1))
+    if len(row) > FEW_ROWS:
+        return int((end - first).sum())
+    points = np.concatenate([grid.points[a:b] for a, b in zip(first, end, strict=True)])
+    return int((((points - centre) ** 2).sum(axis=1) <= reach * reach).sum())
 
 
 def alone(scene: Scene) -> bool:
@@ -87,9 +103,9 @@ def _discs(scene: Scene, points: Array, normals: Array, h: float) -> Cloud:
     """A ball of radius h around each point, that of its disc: the cylinder about a hit reaches √2 h farther."""
     radii = np.full(len(points), h)
     reach = radii * (1 + math.sqrt(2)) * (1 + 1e-12)
-    _check(scene, points, reach, True, f"h = {h:g}")
-    return Cloud(_grid(points, normals, float(reach[0])), np.array(points), radii, reach, ball_tree(points, radii),
-                 cloud.offset(scene))
+    grid = _grid(points, normals, float(reach[0]))
+    _check(grid, points, reach, f"h = {h:g}")
+    return Cloud(grid, np.array(points), radii, reach, ball_tree(points, radii), cloud.offset(scene))
 
 
 def _reach(scene: Scene, k: int, kept: NDArray[np.int64], radii: Array) -> Array:

@@ -75,9 +75,10 @@ def oriented(points: Array, orient: str | Vector = "spanning_tree", k: int = NEI
     """
     index = nearest_others(points, k, tree)[1]
     normal, gap = estimated(points, index)
-    components = parts(index)
+    graph = spanning_tree(normal, index) if orient == "spanning_tree" else _graph(np.ones(index.shape), index)
+    components = parts(graph)
     if orient == "spanning_tree":
-        normal = spread(points, normal, index, components)
+        normal = spread(points, normal, graph, components)
     elif not isinstance(orient, str):
         normal = towards(points, normal, np.array(orient))
     return Oriented(frozen(normal), int(components.max()) + 1, int((gap < SMALLEST_GAP).sum()), agreeing(normal, index))
@@ -109,25 +110,29 @@ def _estimated(points: Array, neighbours: Array) -> tuple[Array, Array]:
     return normal, (values[:, 1] - values[:, 0]) / largest
 
 
-def parts(index: Ints) -> NDArray[np.int32]:
-    """Which part (N,) of the graph of neighbours (N, k) each point belongs to, counted from 0."""
+def parts(graph: Any) -> NDArray[np.int32]:
+    """Which part (N,) of a graph each point belongs to, counted from 0."""
     from scipy.sparse.csgraph import connected_components
 
-    labels: NDArray[np.int32] = connected_components(_graph(np.ones(index.shape), index), directed=False)[1]
+    labels: NDArray[np.int32] = connected_components(graph, directed=False)[1]
     return labels
 
 
-def spread(points: Array, normal: Array, index: Ints, part: NDArray[np.int32]) -> Array:
-    """Normals (N, 3) turned to the outside of each part [Hoppe et al. 1992].
-
-    A minimum spanning tree of the neighbour graph, its edges weighted by 1 - |<n_i, n_j>|, is walked from one
-    point of each part; a normal is turned when it points away from the one before it. Then the part is turned as
-    a whole so that the normals at its extreme points along x, y, z point outwards.
-    """
+def spanning_tree(normal: Array, index: Ints) -> Any:
+    """A minimum spanning tree of each part of the graph of neighbours (N, k), edges weighted by 1 - |<n_i, n_j>|."""
     from scipy.sparse.csgraph import minimum_spanning_tree
 
     weight = 1 - np.abs(_cosines(normal, index))
-    tree = minimum_spanning_tree(_graph(np.maximum(weight, 0) + LIGHTEST, index))
+    return minimum_spanning_tree(_graph(np.maximum(weight, 0) + LIGHTEST, index))
+
+
+def spread(points: Array, normal: Array, tree: Any, part: NDArray[np.int32]) -> Array:
+    """Normals (N, 3) turned to the outside of each part [Hoppe et al. 1992].
+
+    The spanning tree is walked from one point of each part; a normal is turned when it points away from the one
+    before it. Then the part is turned as a whole so that the normals at its extreme points along x, y, z point
+    outwards.
+    """
     before = _before(tree, _first_of_each(part))
     sign = np.where((normal * normal[before]).sum(axis=1) < 0, -1.0, 1.0)
     while (before != before[before]).any():  # each turn halves the way to the first point

@@ -12,8 +12,8 @@ from jaart.core.kernels.records import Out
 
 #: Rays in a tile: long enough to hide the cost of a task, short enough to stop soon.
 TILE = 4096
-#: A tile takes about so long [s], where that is known, within these bounds.
-TILE_SECONDS, SHORTEST, LONGEST = 0.003, 512, 16_384
+#: Where it is known how long a ray takes, a tile may be longer: it takes about so long [s], within these bounds.
+TILE_SECONDS, SHORTEST, LONGEST = 0.003, TILE, 16_384
 #: Few rays are shared evenly too: so many tiles for each thread, of no fewer rays than that.
 PIECES, LEAST = 4, 128
 #: Every so many pixels in each direction are traced by one pass after the other.

@@ -7,7 +7,7 @@ import pytest
 
 from jaart.core import cloud
 from jaart.core.io import load
-from jaart.core.orient import estimated, normals_of, oriented, parts, towards
+from jaart.core.orient import estimated, normals_of, oriented, parts, spanning_tree, towards
 from jaart.core.samples import fibonacci, standard_bumps
 from jaart.core.scene import Scene
 
@@ -107,7 +107,14 @@ def test_how_well_a_normal_is_defined() -> None:
 
 
 def test_parts_of_the_neighbour_graph() -> None:
-    assert parts(np.array([[1], [0], [3], [2], [2]])).tolist() == [0, 0, 1, 1, 1]
+    neighbours = np.array([[1], [0], [3], [2], [2]])
+    assert parts(spanning_tree(np.tile((0.0, 0.0, 1.0), (5, 1)), neighbours)).tolist() == [0, 0, 1, 1, 1]
+
+
+@pytest.mark.parametrize("orient", ["spanning_tree", "none"])
+def test_parts_are_counted_with_a_side_or_without(orient: str) -> None:
+    points = np.concatenate([sphere(200)[0] + (9.0 * i, 0, 0) for i in range(4)])
+    assert oriented(points, orient).components == 4
 
 
 def test_the_dragon_is_turned_outwards(data) -> None:

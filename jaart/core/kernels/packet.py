@@ -1,19 +1,19 @@
 """Rays that walk through the cells together, up to the first cell that a search begins in.
 
 Rays beside one another cross nearly the same cells. Side by side in columns of `LANES` their steps are done as vectors;
-each is the step of traversal.onward, number for number, so that a ray's t does not hang on its company.
+the functions are those of a ray alone, without branches, so that a ray's t does not hang on its company.
 """
 
 from __future__ import annotations
 
-from math import inf, isfinite, sqrt
+from math import isfinite, sqrt
 
 import numpy as np
 
 from jaart.core.kernels.empty_space import away
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.records import Array, Cell, Empty, Unsigned, Vector
-from jaart.core.kernels.traversal import STILL, Axes, Axis
+from jaart.core.kernels.records import Array, Empty, Unsigned, Vector
+from jaart.core.kernels.traversal import Axes, Axis, axis_of, clip, onward, spot_at
 
 #: Rays of a packet: a block of 8 × 8 pixels.
 LANES: Unsigned = np.uint64(64)
@@ -44,65 +44,47 @@ def is_bad(o: Vector, d: Vector) -> bool:
 
 
 @kernel(STRICT, inline=True)
-def set_axis(p: Array, axis: Unsigned, lane: Unsigned, n: float, near: float, far: float) -> tuple[float, float]:
-    """Write what traversal.axis_of knows of an axis, and cut (near, far) to where the ray is between its faces."""
-    o, d = p[ORIGIN + axis + lane], p[DIRECTION + axis + lane]
-    still = abs(d) <= STILL
-    per_d = inf if still else 1.0 / d
-    way = 0.0 if still else (1.0 if d > 0.0 else -1.0)
-    p[DIRECTION + axis + lane] = 0.0 if still else d
-    p[PER_D + axis + lane], p[WAY + axis + lane] = per_d, way
-    p[AHEAD + axis + lane] = 1.0 if way > 0.0 else 0.0
-    a, b = (0.0 - o) * per_d, (n - o) * per_d
-    low, high = (a, b) if way > 0.0 else (b, a)
-    inside = 0.0 <= o <= n
-    low = (-inf if inside else inf) if still else low
-    high = (inf if inside else -inf) if still else high
-    return max(near, low), min(far, high)
+def axis_in(p: Array, axis: Unsigned, lane: Unsigned, n: float) -> Axis:
+    """One axis of a ray of the packet."""
+    return Axis(p[ORIGIN + axis + lane], p[DIRECTION + axis + lane], p[PER_D + axis + lane], p[WAY + axis + lane],
+                p[AHEAD + axis + lane], n - 1.0)
 
 
 @kernel(STRICT, inline=True)
-def placed(p: Array, axis: Unsigned, lane: Unsigned, last: float, t: float) -> float:
-    """Index of the cell at t, as traversal.index_at; the rounded guess is off by one at most."""
-    o, per_d, way, ahead = p[ORIGIN + axis + lane], p[PER_D + axis + lane], p[WAY + axis + lane], p[AHEAD + axis + lane]
-    i = np.floor(min(max(o + t * p[DIRECTION + axis + lane], 0.0), last))
-    end = ahead * last
-    on = way != 0.0 and i != end and (i + ahead - o) * per_d <= t
-    back = way != 0.0 and i != last - end and (i + 1.0 - ahead - o) * per_d > t
-    return i + (way if on else (-way if back else 0.0))
+def axes_in(p: Array, lane: Unsigned, nx: float, ny: float, nz: float) -> Axes:
+    """The three axes of a ray of the packet."""
+    return axis_in(p, X, lane, nx), axis_in(p, Y, lane, ny), axis_in(p, Z, lane, nz)
 
 
 @kernel(STRICT, inline=True)
-def exit_at(p: Array, axis: Unsigned, lane: Unsigned, reach: float) -> float:
-    """The t at which a ray leaves the cells within reach of its own along an axis, as traversal.exit_t."""
-    way = p[WAY + axis + lane]
-    t = (p[AT + axis + lane] + way * reach + p[AHEAD + axis + lane] - p[ORIGIN + axis + lane]) * p[PER_D + axis + lane]
-    return inf if way == 0.0 else t
+def put_axis(p: Array, axis: Unsigned, lane: Unsigned, known: Axis) -> None:
+    """Write what is known of one axis of a ray."""
+    p[DIRECTION + axis + lane], p[PER_D + axis + lane] = known.d, known.per_d
+    p[WAY + axis + lane], p[AHEAD + axis + lane] = known.way, known.ahead
 
 
 @kernel(STRICT, inline=True)
-def index_after(p: Array, axis: Unsigned, lane: Unsigned, last: float, reach: float, own: float, t: float) -> float:
-    """The index after leaving a block at t, as traversal.index_after."""
-    i = p[AT + axis + lane]
-    elsewhere = i if reach == 0.0 else placed(p, axis, lane, last, t)
-    return i + p[WAY + axis + lane] * (reach + 1.0) if own == t else elsewhere
+def spot_in(p: Array, lane: Unsigned) -> Vector:
+    """The cell that a ray of the packet has come to."""
+    return p[AT + X + lane], p[AT + Y + lane], p[AT + Z + lane]
 
 
 @kernel(STRICT)
 def enter(p: Array, nx: float, ny: float, nz: float, count: Unsigned) -> None:
     """Put rays, whose ORIGIN, DIRECTION and T are written, where they enter the lattice, or at T where it is later."""
     for lane in range(count):
-        near, far = set_axis(p, X, lane, nx, 0.0, inf)
-        near, far = set_axis(p, Y, lane, ny, near, far)
-        near, far = set_axis(p, Z, lane, nz, near, far)
+        x = axis_of(p[ORIGIN + X + lane], p[DIRECTION + X + lane], nx)
+        y = axis_of(p[ORIGIN + Y + lane], p[DIRECTION + Y + lane], ny)
+        z = axis_of(p[ORIGIN + Z + lane], p[DIRECTION + Z + lane], nz)
+        put_axis(p, X, lane, x)
+        put_axis(p, Y, lane, y)
+        put_axis(p, Z, lane, z)
+        near, far = clip((x, y, z))
         t = max(near, p[T + lane])
         p[ENTER + lane], p[LEAVE + lane], p[T + lane] = near, far, t
         p[STATE + lane], p[VISITED + lane] = (WALKING if t <= far else LEFT), 0.0
     for lane in range(count):
-        t = p[T + lane]
-        p[AT + X + lane] = placed(p, X, lane, nx - 1.0, t)
-        p[AT + Y + lane] = placed(p, Y, lane, ny - 1.0, t)
-        p[AT + Z + lane] = placed(p, Z, lane, nz - 1.0, t)
+        p[AT + X + lane], p[AT + Y + lane], p[AT + Z + lane] = spot_at(axes_in(p, lane, nx, ny, nz), p[T + lane])
 
 
 @kernel(STRICT)
@@ -121,11 +103,8 @@ def step(p: Array, nx: float, ny: float, nz: float, free: float, count: Unsigned
     for lane in range(count):
         away, state = p[AWAY + lane], p[STATE + lane]
         reach = max(away - free - 1.0, 0.0)
-        tx, ty, tz = exit_at(p, X, lane, reach), exit_at(p, Y, lane, reach), exit_at(p, Z, lane, reach)
-        t = min(tx, min(ty, tz))
-        i = index_after(p, X, lane, nx - 1.0, reach, tx, t)
-        j = index_after(p, Y, lane, ny - 1.0, reach, ty, t)
-        k = index_after(p, Z, lane, nz - 1.0, reach, tz, t)
+        t, spot = onward(axes_in(p, lane, nx, ny, nz), spot_in(p, lane), reach)
+        i, j, k = spot
         inside = 0.0 <= i < nx and 0.0 <= j < ny and 0.0 <= k < nz and t <= p[LEAVE + lane]
         walks, found = state == WALKING, away <= free
         goes = walks and not found
@@ -152,25 +131,6 @@ def place_ray(p: Array, lane: Unsigned, o: Vector, d: Vector, t: float) -> None:
     p[ORIGIN + X + lane], p[ORIGIN + Y + lane], p[ORIGIN + Z + lane] = o
     p[DIRECTION + X + lane], p[DIRECTION + Y + lane], p[DIRECTION + Z + lane] = d
     p[T + lane] = t
-
-
-@kernel(STRICT, inline=True)
-def axis_in(p: Array, axis: Unsigned, lane: Unsigned, n: int) -> Axis:
-    """One axis of a ray of the packet."""
-    return Axis(p[ORIGIN + axis + lane], p[DIRECTION + axis + lane], p[PER_D + axis + lane], p[WAY + axis + lane],
-                p[AHEAD + axis + lane], n - 1.0)
-
-
-@kernel(STRICT, inline=True)
-def axes_in(p: Array, lane: Unsigned, shape: Cell) -> Axes:
-    """The three axes of a ray of the packet."""
-    return axis_in(p, X, lane, shape[0]), axis_in(p, Y, lane, shape[1]), axis_in(p, Z, lane, shape[2])
-
-
-@kernel(STRICT, inline=True)
-def spot_in(p: Array, lane: Unsigned) -> Vector:
-    """The cell that a ray of the packet has come to."""
-    return p[AT + X + lane], p[AT + Y + lane], p[AT + Z + lane]
 
 
 @kernel(STRICT)

@@ -176,7 +176,8 @@ def end_in(cells: Cells, plan: Plan, p: Array, lane: Unsigned, rows: Array, work
     if p[BAD + lane] > 0.0:
         return no_hit(r.BAD_RAY)
     visited = int(p[VISITED + lane])
-    axes = axes_in(p, lane, cells.empty.shape)
+    nx, ny, nz = cells.empty.shape
+    axes = axes_in(p, lane, float(nx), float(ny), float(nz))
     t = p[ENTER + lane]
     way = way_of(cells, axes, t, p[LEAVE + lane], least_of_energies(plan) if t == 0.0 else 0.0)
     at, spot = p[T + lane], spot_in(p, lane)

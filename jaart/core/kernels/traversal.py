@@ -39,11 +39,11 @@ Axes = tuple[Axis, Axis, Axis]
 
 
 @kernel(STRICT, inline=True)
-def axis_of(o: float, d: float, n: int) -> Axis:
+def axis_of(o: float, d: float, n: float) -> Axis:
     """One axis of a ray with an origin and a unit direction."""
-    if abs(d) <= STILL:
-        return Axis(o, 0.0, inf, 0.0, 0.0, n - 1.0)
-    return Axis(o, d, 1.0 / d, 1.0 if d > 0.0 else -1.0, 1.0 if d > 0.0 else 0.0, n - 1.0)
+    still = abs(d) <= STILL
+    way = 0.0 if still else (1.0 if d > 0.0 else -1.0)
+    return Axis(o, 0.0 if still else d, inf if still else 1.0 / d, way, 1.0 if way > 0.0 else 0.0, n - 1.0)
 
 
 @kernel(STRICT, inline=True)
@@ -61,10 +61,10 @@ def plane_t(axis: Axis, plane: float) -> float:
 @kernel(STRICT, inline=True)
 def slab(axis: Axis) -> tuple[float, float]:
     """Where a ray enters and leaves 0 <= x <= n along one axis; (inf, -inf) when it never does."""
-    if axis.way == 0.0:
-        return (-inf, inf) if 0.0 <= axis.o <= axis.last + 1.0 else (inf, -inf)
+    still, inside = axis.way == 0.0, 0.0 <= axis.o <= axis.last + 1.0
     a, b = plane_t(axis, 0.0), plane_t(axis, axis.last + 1.0)
-    return (a, b) if axis.way > 0.0 else (b, a)
+    low, high = (a, b) if axis.way > 0.0 else (b, a)
+    return ((-inf if inside else inf) if still else low), ((inf if inside else -inf) if still else high)
 
 
 @kernel(STRICT, inline=True)
@@ -80,16 +80,13 @@ def clip(axes: Axes) -> tuple[float, float]:
 def index_at(axis: Axis, t: float) -> float:
     """Index of the cell along an axis at t; on a face it is the cell that the ray runs into.
 
-    The rounded guess is put right by the same t of planes that stepping uses.
+    The rounded guess, off by one at most, is put right by the same t of planes that stepping uses.
     """
     i: float = np.floor(min(max(axis.o + t * axis.d, 0.0), axis.last))
-    if axis.way != 0.0:
-        end = axis.ahead * axis.last
-        while i != end and plane_t(axis, i + axis.ahead) <= t:
-            i += axis.way
-        while i != axis.last - end and plane_t(axis, i + 1.0 - axis.ahead) > t:
-            i -= axis.way
-    return i
+    end = axis.ahead * axis.last
+    on = axis.way != 0.0 and i != end and plane_t(axis, i + axis.ahead) <= t
+    back = axis.way != 0.0 and i != axis.last - end and plane_t(axis, i + 1.0 - axis.ahead) > t
+    return i + (axis.way if on else (-axis.way if back else 0.0))
 
 
 @kernel(STRICT, inline=True)
@@ -113,15 +110,15 @@ def cell_at(axes: Axes, t: float) -> Cell:
 @kernel(STRICT, inline=True)
 def exit_t(axis: Axis, i: float, reach: float) -> float:
     """The t at which a ray leaves the cells i - reach … i + reach of an axis."""
-    return inf if axis.way == 0.0 else plane_t(axis, i + axis.way * reach + axis.ahead)
+    t = plane_t(axis, i + axis.way * reach + axis.ahead)
+    return inf if axis.way == 0.0 else t
 
 
 @kernel(STRICT, inline=True)
 def index_after(axis: Axis, i: float, reach: float, own: float, t: float) -> float:
     """The index after leaving a block at t: over the far face where own == t, else where the ray is."""
-    if own == t:
-        return i + axis.way * (reach + 1.0)
-    return i if reach == 0.0 else index_at(axis, t)
+    elsewhere = i if reach == 0.0 else index_at(axis, t)
+    return i + axis.way * (reach + 1.0) if own == t else elsewhere
 
 
 @kernel(STRICT, inline=True)
