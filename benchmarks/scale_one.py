@@ -30,7 +30,7 @@ from jaart.core.suited import suited
 #: Sizes whose picture loads the kernels before anything is measured.
 WARM = {"lattice": 16, "cloud": 500}
 #: Pictures with everything kept.
-PICTURES = 7
+PICTURES = 5
 #: Arrays that are named: those of at least so many bytes an item.
 NAMED = 1.0
 
