@@ -29,18 +29,29 @@ def empty_space(cells: NDArray[np.int32], shape: Cell, most: int) -> Empty:
     apart = _distances(cells // BRICK, brick_shape(shape))
     bricks, near, held = np.empty(apart.size, np.int32), [np.empty(0, np.uint8)], 0
     for slab in pieces(shape[0], max(PLANES, beside // BRICK * 2 * BRICK)):
-        begin, end = max(slab.start - beside, 0), min(slab.stop + beside, shape[0])
-        known = FARTHEST - 1 if end - begin == shape[0] else beside
-        some = cells[(cells[:, 0] >= begin) & (cells[:, 0] < end)] - np.array([begin, 0, 0], np.int32)
-        window = _distances(some, (end - begin, *shape[1:]))
-        own = slice(slab.start // BRICK, -(-slab.stop // BRICK))
-        number = slice(own.start * apart[0].size, own.stop * apart[0].size)
-        room = np.empty(BRICK**3 * apart[own].size, np.uint8)
-        more = table.pack(window, slab.start - begin, slab.stop - begin, most, known, apart[own], bricks[number], room,
-                          held)
-        near.append(room[:BRICK**3 * more].copy())
-        held += more
+        near.append(_in_slab(cells, shape, slab, (most, beside), apart, bricks, held))
+        held += len(near[-1]) // BRICK**3
     return Empty(shape, bricks, np.concatenate(near))
+
+
+def _in_slab(cells: NDArray[np.int32], shape: Cell, slab: slice, reach: tuple[int, int], apart: Bytes,
+             bricks: NDArray[np.int32], held: int) -> Bytes:
+    """Write the bricks of some planes; returns the distances that are told cell by cell.
+
+    reach: how far they are told so, and how many planes beside these are looked at; apart: how many bricks those with a
+    surfel are away; held: how many bricks were told cell by cell before.
+    """
+    most, beside = reach
+    begin, end = max(slab.start - beside, 0), min(slab.stop + beside, shape[0])
+    some = cells[(cells[:, 0] >= begin) & (cells[:, 0] < end)] - np.array([begin, 0, 0], np.int32)
+    window = _distances(some, (end - begin, *shape[1:]))
+    own = slice(slab.start // BRICK, -(-slab.stop // BRICK))
+    number = slice(own.start * apart[0].size, own.stop * apart[0].size)
+    room = np.empty(BRICK**3 * apart[own].size, np.uint8)
+    known = FARTHEST - 1 if end - begin == shape[0] else beside
+    more = table.pack(window, slab.start - begin, slab.stop - begin, most, known, apart[own], bricks[number], room,
+                      held)
+    return room[:BRICK**3 * more].copy()
 
 
 def distances(empty: Empty, cells: NDArray[Any]) -> NDArray[np.int64]:
