@@ -14,6 +14,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import suppress
+from mmap import mmap
 from typing import Any
 
 import numpy as np
@@ -101,7 +102,8 @@ def arrays_in(value: Any, name: str, seen: set[int]) -> Iterator[tuple[str, np.n
         owner = value
         while isinstance(owner.base, np.ndarray):
             owner = owner.base
-        if id(owner) not in seen:
+        as_used = isinstance(getattr(owner.base, "obj", owner.base), mmap)  # memory.sparse
+        if id(owner) not in seen and not as_used:
             yield name, owner
         seen |= {id(owner), id(value)}
         value = owner.base

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+import math
+import mmap
 import os
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from jaart.core.errors import SettingsError
 
@@ -26,6 +33,15 @@ def limit() -> int:
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2
     except (AttributeError, ValueError, OSError):
         return 4 << 30
+
+
+def sparse(shape: tuple[int, ...], kind: type[Any] = np.float64) -> NDArray[Any]:
+    """Zeros, of which only those pages take memory that are used: not the many that the system would take at once."""
+    count = math.prod(shape)
+    room = mmap.mmap(-1, max(count * np.dtype(kind).itemsize, 1))
+    with suppress(AttributeError, OSError):  # only where the system has larger pages
+        room.madvise(mmap.MADV_NOHUGEPAGE)
+    return np.frombuffer(room, kind, count).reshape(shape)
 
 
 def words(size: float) -> str:
