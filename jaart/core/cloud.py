@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels.cover import in_question, keep
-from jaart.core.nearest import nearest_others, tree_over
+from jaart.core.memory import ITEM, check, pieces
+from jaart.core.nearest import POINTS_AT_ONCE, nearest_others, tree_over
 from jaart.core.scene import Array, Scene, frozen
 
 if TYPE_CHECKING:
@@ -54,15 +55,20 @@ def offset(scene: Scene) -> Array:
 
 def local_points(scene: Scene) -> Array:
     """A cloud's points (N, 3) relative to `offset`: what kernels see. Rays have the same offset subtracted."""
-    return scene.once("local_points", (), lambda: frozen(_points(scene) - offset(scene)))
+    def make() -> Array:
+        points = _points(scene)
+        check(ITEM * len(points), f"a cloud of {len(points)} points")
+        return frozen(points - offset(scene)) if offset(scene).any() else points
+
+    return scene.once("local_points", (), make)
 
 
-def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.intp]]:
+def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.int32]]:
     """Distances (N, k) from each point to its k nearest others, rising, and which they are (N, k).
 
     k: at least 1; clipped to N - 1, so a single point has none.
     """
-    def make() -> tuple[Array, NDArray[np.intp]]:
+    def make() -> tuple[Array, NDArray[np.int32]]:
         return nearest_others(local_points(scene), k, lambda: kd_tree(scene))
 
     return scene.once("nearest", k, make)
@@ -73,17 +79,20 @@ def kd_tree(scene: Scene) -> cKDTree:
     return scene.once("kd_tree", (), lambda: tree_over(local_points(scene)))
 
 
+def kth_distance(scene: Scene, k: int, some: NDArray[np.int64]) -> Array:
+    """Distance (M,) from some points to the k-th nearest other of each; 0 where there is no other."""
+    k, found, points = min(k, len(_points(scene)) - 1), np.zeros(len(some)), local_points(scene)
+    for piece in pieces(len(some) if k > 0 else 0, POINTS_AT_ONCE):
+        found[piece] = kd_tree(scene).query(points[some[piece]], [k + 1], workers=-1)[0][:, 0]
+    return found
+
+
 def spacing(scene: Scene) -> float:
     """Mean distance from a point to the nearest one elsewhere: the unit "s" of a cloud's lengths.
 
     0 when there is no point elsewhere.
     """
-    def make() -> float:
-        distance = nearest(scene, DENSITY_K)[0][:, :1]  # the neighbours that balls are made of by default
-        apart = distance[distance > 0]
-        return float(apart.mean()) if len(apart) else 0.0
-
-    return scene.once("spacing", (), make)
+    return _density(scene)[0]
 
 
 def square(scene: Scene) -> float:
@@ -93,15 +102,20 @@ def square(scene: Scene) -> float:
     is the spacing of a regular cloud, but of an irregular or noisy one about twice `spacing`, which pairs of
     close points make small. 0 when there is no other point.
     """
-    def make() -> float:
-        distance = nearest(scene, DENSITY_K)[0]
-        if not distance.shape[1]:
-            return 0.0
-        last, k = distance[:, -1], distance.shape[1]
-        inner = last[last <= OUTLIER * np.median(last)]
-        return float(inner.mean()) * math.sqrt(math.pi / k)
+    return _density(scene)[1]
 
-    return scene.once("square", (), make)
+
+def _density(scene: Scene) -> tuple[float, float]:
+    """`spacing` and `square`, of the neighbours that balls are made of by default."""
+    def make() -> tuple[float, float]:
+        distance = nearest(scene, DENSITY_K)[0]
+        if not (k := distance.shape[1]):
+            return 0.0, 0.0
+        first, last = distance[:, :1], distance[:, -1]
+        apart, inner = first[first > 0], last[last <= OUTLIER * np.median(last)]
+        return (float(apart.mean()) if len(apart) else 0.0), float(inner.mean()) * math.sqrt(math.pi / k)
+
+    return scene.once("density", (), make)
 
 
 def auto_h(scene: Scene) -> float:
@@ -133,15 +147,18 @@ def cover(scene: Scene, ball_k: int) -> NDArray[np.int64]:
     that the points sample it loses next to nothing.
     """
     def make() -> NDArray[np.int64]:
+        radii = np.array(ball_radii(scene, ball_k))
         distance, index = nearest(scene, ball_k)
-        radii = ball_radii(scene, ball_k)
         asked, kept = np.zeros(len(index), dtype=bool), np.ones(len(index), dtype=bool)
         in_question(distance, index, radii, CORE, asked)
         some = np.flatnonzero(asked)
         order = some[_large_first(radii[some], local_points(scene)[some])]
-        rank = np.empty(len(index), np.int64)
+        rank = np.empty(len(index), np.int32)
         rank[order] = np.arange(len(order))
         keep(distance, index, radii, order, rank, CORE, kept)
+        if ball_k == DENSITY_K:
+            _density(scene)
+        scene.forget("nearest")  # all that is asked of it is known
         return np.flatnonzero(kept)
 
     return scene.once("cover", ball_k, make)

@@ -27,7 +27,7 @@ POINTS_AT_ONCE = 1 << 13
 
 
 def nearest_others(points: Array, k: int, tree: Callable[[], cKDTree] | None = None
-                   ) -> tuple[Array, NDArray[np.intp]]:
+                   ) -> tuple[Array, NDArray[np.int32]]:
     """Distances (N, k) from each of the points (N, 3) to its k nearest others, and which they are.
 
     A point that stands in the same place is another one. k is clipped to N - 1. tree: makes one over these points, or
@@ -35,9 +35,9 @@ def nearest_others(points: Array, k: int, tree: Callable[[], cKDTree] | None = N
     """
     k = min(k, len(points) - 1)
     if k < 1:
-        return np.empty((len(points), 0)), np.empty((len(points), 0), np.intp)
+        return np.empty((len(points), 0)), np.empty((len(points), 0), np.int32)
     cells = even_cells(points, k) if len(points) >= LEAST and k <= MOST_NEIGHBOURS else None
-    distance, index = np.empty((len(points), k)), np.empty((len(points), k), np.intp)
+    distance, index = np.empty((len(points), k)), np.empty((len(points), k), np.int32)
     if cells is None:
         in_tree(_made(points, tree), points, None, distance, index)
         return distance, index
@@ -53,7 +53,7 @@ def nearest_others(points: Array, k: int, tree: Callable[[], cKDTree] | None = N
 
 
 def in_tree(tree: cKDTree, points: Array, rows: NDArray[np.intp] | None, distance: Array,
-            index: NDArray[np.intp]) -> None:
+            index: NDArray[np.int32]) -> None:
     """Write the same of some rows of the points, or of all, by a tree over all."""
     k = distance.shape[1]
 

@@ -17,7 +17,7 @@ from jaart.core.telling import tell
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
-Ints = NDArray[np.intp]
+Ints = NDArray[np.integer]
 Vector = tuple[float, float, float]
 
 #: Neighbours that a normal is estimated from, and along which orientation spreads.

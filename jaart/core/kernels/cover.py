@@ -9,10 +9,11 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.records import Array
 
 Ints = NDArray[np.int64]
+Rows = NDArray[np.int32]
 
 
 @kernel(STRICT, entry=True)
-def in_question(distance: Array, index: Ints, radii: Array, share: float, asked: NDArray[np.bool_]) -> None:
+def in_question(distance: Array, index: Rows, radii: Array, share: float, asked: NDArray[np.bool_]) -> None:
     """Mark the balls of which one holds the core of the other; the arguments, but for asked, as of `keep`."""
     for i in range(index.shape[0]):
         for at in range(index.shape[1]):
@@ -22,7 +23,7 @@ def in_question(distance: Array, index: Ints, radii: Array, share: float, asked:
 
 
 @kernel(STRICT, entry=True)
-def keep(distance: Array, index: Ints, radii: Array, order: Ints, rank: Ints, share: float,
+def keep(distance: Array, index: Rows, radii: Array, order: Ints, rank: Rows, share: float,
          kept: NDArray[np.bool_]) -> None:
     """Mark the balls that are kept: one that is kept drops later ones whose core it holds.
 

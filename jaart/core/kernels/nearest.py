@@ -12,6 +12,7 @@ from jaart.core.kernels.jit import EXACT, STRICT, kernel
 from jaart.core.kernels.records import Array, Vector
 
 Ints = NDArray[np.int64]
+Rows = NDArray[np.int32]
 #: A distance counts as found when what was not looked at is farther by this share: cells are rounded.
 _SURE = 1.0 - 1e-9
 
@@ -39,7 +40,7 @@ def square_between(points: Array, a: int, x: Vector) -> float:
 
 
 @kernel(STRICT, inline=True)
-def insert(squares: Array, index: Ints, row: int, square: float, number: int) -> None:
+def insert(squares: Array, index: Rows, row: int, square: float, number: int) -> None:
     """Put a neighbour among those of a row, which rise; the last falls out."""
     at = squares.shape[1] - 1
     while at > 0 and squares[row, at - 1] > square:
@@ -59,7 +60,7 @@ def around(cells: Cells, axis: int, x: float) -> tuple[int, int, float]:
 
 
 @kernel(STRICT, entry=True)
-def find_nearest(cells: Cells, begin: int, end: int, distance: Array, index: Ints) -> None:
+def find_nearest(cells: Cells, begin: int, end: int, distance: Array, index: Rows) -> None:
     """Write the nearest others of some of the sorted points into their rows, those that are certain.
 
     begin, end: which points; distance, index: (N, k) rows by the points' numbers; a row that is not certain begins
