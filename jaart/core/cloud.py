@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core.kernels.cover import keep
+from jaart.core.kernels.cover import in_question, keep
 from jaart.core.memory import ITEM, check, pieces
-from jaart.core.pieces import do_each
+from jaart.core.nearest import nearest_others, tree_over
 from jaart.core.scene import Array, Scene, frozen
-from jaart.core.telling import tell
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
@@ -23,15 +22,15 @@ GRID = 1 / 8
 DENSITY_K, OUTLIER = 6, 10.0
 #: The proposed h in lengths of a point's own square.
 AUTO_H = 1.2
+#: Points whose neighbours are looked for at a time.
+ASKED = 1 << 14
 #: Share of a ball's radius that must lie in another ball before it is left out.
 CORE = 0.5
-#: Points whose neighbours a thread finds at a time.
-POINTS_AT_ONCE = 1 << 14
 
 
 def bounds(scene: Scene) -> tuple[Array, Array]:
     """Lowest and highest corner (3,) of the box around a cloud's points, in its own coordinates."""
-    return scene.once("bounds", (), lambda: (frozen(_points(scene).min(axis=0)), frozen(_points(scene).max(axis=0))))
+    return scene.once("bounds", (), lambda: _bounds(_points(scene)))
 
 
 def diagonal(scene: Scene) -> float:
@@ -66,54 +65,26 @@ def local_points(scene: Scene) -> Array:
     return scene.once("local_points", (), make)
 
 
-def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.int32]]:
+def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.intp]]:
     """Distances (N, k) from each point to its k nearest others, rising, and which they are (N, k).
 
     k: at least 1; clipped to N - 1, so a single point has none.
     """
-    def make() -> tuple[Array, NDArray[np.int32]]:
-        return nearest_others(local_points(scene), k, kd_tree(scene))
+    def make() -> tuple[Array, NDArray[np.intp]]:
+        return nearest_others(local_points(scene), k, lambda: kd_tree(scene))
 
     return scene.once("nearest", k, make)
 
 
 def kd_tree(scene: Scene) -> cKDTree:
     """A tree over `local_points` that finds nearest ones."""
-    return scene.once("kd_tree", (), lambda: _tree(local_points(scene)))
-
-
-def nearest_others(points: Array, k: int, tree: cKDTree | None = None) -> tuple[Array, NDArray[np.int32]]:
-    """Distances (N, k) from each of the points (N, 3) to its k nearest others, and which they are.
-
-    A point that stands in the same place is another one. k is clipped to N - 1. tree: over these points.
-    """
-    k = min(k, len(points) - 1)
-    distance, index = np.empty((len(points), max(k, 0))), np.empty((len(points), max(k, 0)), np.int32)
-    if k < 1:
-        return distance, index
-    tree = tree or _tree(points)
-
-    def find(rows: NDArray[np.intp]) -> None:
-        away, which = tree.query(points[rows], k + 1)
-        itself = which == rows[:, None]
-        itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
-        distance[rows], index[rows] = away[~itself].reshape(-1, k), which[~itself].reshape(-1, k)
-
-    # points of a leaf together, since they read the same parts of the tree
-    do_each(find, [tree.indices[i:i + POINTS_AT_ONCE] for i in range(0, len(points), POINTS_AT_ONCE)], progress=tell)
-    return distance, index
-
-
-def _tree(points: Array) -> cKDTree:
-    from scipy.spatial import cKDTree
-
-    return cKDTree(points)
+    return scene.once("kd_tree", (), lambda: tree_over(local_points(scene)))
 
 
 def kth_distance(scene: Scene, k: int, some: NDArray[np.int64]) -> Array:
     """Distance (M,) from some points to the k-th nearest other of each; 0 where there is no other."""
     k, found, points = min(k, len(_points(scene)) - 1), np.zeros(len(some)), local_points(scene)
-    for piece in pieces(len(some) if k > 0 else 0, POINTS_AT_ONCE):
+    for piece in pieces(len(some) if k > 0 else 0, ASKED):
         found[piece] = kd_tree(scene).query(points[some[piece]], [k + 1], workers=-1)[0][:, 0]
     return found
 
@@ -178,13 +149,15 @@ def cover(scene: Scene, ball_k: int) -> NDArray[np.int64]:
     that the points sample it loses next to nothing.
     """
     def make() -> NDArray[np.int64]:
-        radii = np.array(ball_radii(scene, ball_k))
         distance, index = nearest(scene, ball_k)
-        order = _large_first(radii, local_points(scene))
-        place = np.empty(len(order), np.int32)
-        place[order] = np.arange(len(order))
-        kept = np.ones(len(index), dtype=bool)
-        keep(distance, index, radii, order, place, CORE, kept)
+        radii = ball_radii(scene, ball_k)
+        asked, kept = np.zeros(len(index), dtype=bool), np.ones(len(index), dtype=bool)
+        in_question(distance, index, radii, CORE, asked)
+        some = np.flatnonzero(asked)
+        order = some[_large_first(radii[some], local_points(scene)[some])]
+        rank = np.empty(len(index), np.int64)
+        rank[order] = np.arange(len(order))
+        keep(distance, index, radii, order, rank, CORE, kept)
         if ball_k == DENSITY_K:
             _density(scene)
         scene.forget("nearest")  # all that is asked of it is known
@@ -201,6 +174,12 @@ def _large_first(radii: Array, points: Array) -> NDArray[np.int64]:
     some = order[tied]
     order[tied] = some[np.lexsort((*points[some].T, -radii[some]))]
     return order
+
+
+def _bounds(points: Array) -> tuple[Array, Array]:
+    """Lowest and highest corner (3,), each column alone: rows of three numbers make no vectors."""
+    return (frozen(np.array([points[:, axis].min() for axis in range(3)])),
+            frozen(np.array([points[:, axis].max() for axis in range(3)])))
 
 
 def _points(scene: Scene) -> Array:

@@ -26,8 +26,9 @@ from jaart.core.scene import Array
 Ints = NDArray[np.int64]
 T = TypeVar("T")
 
-#: Bytes of a chunk, unless a block is longer.
-CHUNK = 1 << 20
+#: Bytes of the first chunk, unless a block is longer, and how many times as many a later one has: from 4 MiB on the
+#: system may hand out large pages, of which fewer are to be cleared and entered.
+CHUNK, LARGER = 1 << 20, 8
 #: Scratch is for so many surfels, and the heap for so many entries, until a place or a ray needs more.
 SURFELS, HEAP = 256, 4096
 #: Scratch for each surfel that may be near a point: its weight, its place in the local frame, its row of a fit.
@@ -132,7 +133,7 @@ class Places:
 
     def chunk(self, need: int) -> tuple[int, int]:
         """Address and bytes of one more chunk, which has room for so many. Raises SettingsError where memory ends."""
-        made = np.empty(-(-max(need, CHUNK) // 8))
+        made = np.empty(-(-max(need, CHUNK * min(len(self.chunks), LARGER)) // 8))
         with self._lock:
             memory.check(sum(one.nbytes for one in (*self.chunks, made)), self._what)
             self.chunks.append(made)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from jaart.core.kernels import tree as kernels
-from jaart.core.kernels.tree import LEAF, Tree
+from jaart.core.kernels.tree import BALL_LEAF, LEAF, Tree
 from jaart.core.scene import Array
 
 
@@ -26,7 +26,7 @@ def box_tree(lows: Array, highs: Array, leaf: int = LEAF) -> Tree:
                 room.order)
 
 
-def ball_tree(points: Array, radii: Array, leaf: int = LEAF) -> Tree:
+def ball_tree(points: Array, radii: Array, leaf: int = BALL_LEAF) -> Tree:
     """The tree over balls around points (N, 3) of radii (N,), its boxes rounded outwards."""
     reach = np.asarray(radii)[:, None]
     low, high = points - reach, points + reach

@@ -12,18 +12,28 @@ Ints = NDArray[np.int64]
 
 
 @kernel(STRICT, entry=True)
-def keep(distance: Array, index: NDArray[np.int32], radii: Array, order: Ints, place: NDArray[np.int32], share: float,
+def in_question(distance: Array, index: Ints, radii: Array, share: float, asked: NDArray[np.bool_]) -> None:
+    """Mark the balls of which one holds the core of the other; the arguments, but for asked, as of `keep`."""
+    for i in range(index.shape[0]):
+        for at in range(index.shape[1]):
+            j = index[i, at]
+            if distance[i, at] + share * radii[j] <= radii[i]:
+                asked[i] = asked[j] = True
+
+
+@kernel(STRICT, entry=True)
+def keep(distance: Array, index: Ints, radii: Array, order: Ints, rank: Ints, share: float,
          kept: NDArray[np.bool_]) -> None:
     """Mark the balls that are kept: one that is kept drops later ones whose core it holds.
 
     A core is the ball of `share` times the radius. distance, index: (N, k) nearest other centres of each ball,
-    rising; radii (N,), at most the distance to the last of them; order (N,): which ball is first, and so on; place
-    (N,): where in it each ball is; kept (N,): all true.
+    rising; radii (N,), at most the distance to the last of them; order: balls in question, the first first; rank (N,):
+    where in it each of them stands; kept (N,): all true.
     """
-    for at in range(order.shape[0]):
-        i = order[at]
+    for turn in range(order.shape[0]):
+        i = order[turn]
         if kept[i]:
-            for near in range(index.shape[1]):
-                j = index[i, near]
-                if place[j] > at and distance[i, near] + share * radii[j] <= radii[i]:
+            for at in range(index.shape[1]):
+                j = index[i, at]
+                if distance[i, at] + share * radii[j] <= radii[i] and rank[j] > turn:
                     kept[j] = False

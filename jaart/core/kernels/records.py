@@ -237,8 +237,8 @@ class RayEnd(NamedTuple):
 
     energy: length of the last step, or the minimum; off: off-centre value; iterations: steps of the last start;
     evaluations: of all starts; used: surfels summed over them; cells: cells or balls visited; lowered:
-    evaluations with fewer degrees than asked for; gap: as of End; rows: written to the log; missing: a ball whose
-    surfels are not gathered yet, else -1.
+    evaluations with fewer degrees than asked for; gap: as of End; rows: written to the log; missing: 0 where
+    more balls are to be listed first, else -1.
     """
 
     state: int
