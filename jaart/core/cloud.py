@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels.cover import in_question, keep
 from jaart.core.memory import ITEM, check, pieces
-from jaart.core.nearest import POINTS_AT_ONCE, nearest_others, tree_over
+from jaart.core.nearest import nearest_others, tree_over
+from jaart.core.pieces import do_each
 from jaart.core.scene import Array, Scene, frozen
+from jaart.core.telling import tell
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
@@ -22,6 +24,8 @@ GRID = 1 / 8
 DENSITY_K, OUTLIER = 6, 10.0
 #: The proposed h in lengths of a point's own square.
 AUTO_H = 1.2
+#: Points whose neighbours are looked for at a time.
+ASKED = 1 << 14
 #: Share of a ball's radius that must lie in another ball before it is left out.
 CORE = 0.5
 
@@ -82,8 +86,14 @@ def kd_tree(scene: Scene) -> cKDTree:
 def kth_distance(scene: Scene, k: int, some: NDArray[np.int64]) -> Array:
     """Distance (M,) from some points to the k-th nearest other of each; 0 where there is no other."""
     k, found, points = min(k, len(_points(scene)) - 1), np.zeros(len(some)), local_points(scene)
-    for piece in pieces(len(some) if k > 0 else 0, POINTS_AT_ONCE):
-        found[piece] = kd_tree(scene).query(points[some[piece]], [k + 1], workers=-1)[0][:, 0]
+    if k < 1:
+        return found
+    tree = kd_tree(scene)
+
+    def find(piece: slice) -> None:
+        found[piece] = tree.query(points[some[piece]], [k + 1])[0][:, 0]
+
+    do_each(find, list(pieces(len(some), ASKED)), progress=tell)
     return found
 
 
@@ -147,8 +157,8 @@ def cover(scene: Scene, ball_k: int) -> NDArray[np.int64]:
     that the points sample it loses next to nothing.
     """
     def make() -> NDArray[np.int64]:
-        radii = np.array(ball_radii(scene, ball_k))
         distance, index = nearest(scene, ball_k)
+        radii = ball_radii(scene, ball_k)
         asked, kept = np.zeros(len(index), dtype=bool), np.ones(len(index), dtype=bool)
         in_question(distance, index, radii, CORE, asked)
         some = np.flatnonzero(asked)
