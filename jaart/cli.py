@@ -102,7 +102,8 @@ def gui(scene: SceneName = "splash",
 
     from jaart.gui.app import run as open_window
 
-    return open_window(scene, settings, view, pixel, None if screenshot is None else str(screenshot), frame, notes)
+    return open_window(scene, settings, view, pixel, None if screenshot is None else str(screenshot), frame, notes,
+                       preset)
 
 
 @app.command()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from qtpy.QtCore import QEvent, QObject, Qt
 from qtpy.QtGui import QCloseEvent, QKeyEvent
 from qtpy.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QToolButton, QVBoxLayout, QWidget
@@ -24,6 +25,8 @@ _MESSAGE = "Click a pixel in the picture to see its ray in space."
 _VIEWS = (("oblique", "reset view", "Look from the side and above"),
           ("ray", "along ray", "Look along the ray"),
           ("side", "side view", "Look straight onto the plane of the 2D projector"))
+#: A step this many times farther off than what is looked at is too small to be seen.
+_FAR = 4.0
 
 
 class Analyzer3D(Panel):
@@ -84,7 +87,24 @@ class Analyzer3D(Panel):
         if self._moved:
             self._moved = False
             self._aim(trace, "oblique")
+        elif not self._sees(trace.query[self.model.step]):
+            self._follow(trace)
         self._render()
+
+    def _sees(self, point: NDArray[np.float64]) -> bool:
+        """Whether a point is within the view."""
+        camera, aspect = self._view.camera, self._view.width() / max(self._view.height(), 1)
+        camera.SetUseHorizontalViewAngle(aspect < 1)
+        x, y, _, depth = camera.GetCompositeProjectionTransformMatrix(aspect, -1, 1).MultiplyPoint((*point, 1.0))
+        return bool(max(abs(x), abs(y)) <= depth <= _FAR * camera.GetDistance())
+
+    def _follow(self, trace: Trace) -> None:
+        """Bring the chosen step into view, seen from the side from which the view looks now."""
+        camera = self._view.camera
+        away = -np.array(camera.GetDirectionOfProjection())
+        eye, target, _ = view(trace, self.model.step, "oblique", self._up())
+        camera.SetPosition(*(target + away * np.linalg.norm(np.subtract(eye, target))))
+        camera.SetFocalPoint(*target)
 
     def _aim(self, trace: Trace, kind: str) -> None:
         eye, target, up = view(trace, self.model.step, kind, self._up())

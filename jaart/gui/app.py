@@ -22,14 +22,16 @@ if TYPE_CHECKING:
 
 #: What is opened when nothing is named.
 SAMPLE = "splash"
+#: The preset when nobody says.
+FIRST = next(iter(PRESETS))
 
 
 def run(source: str | PathLike[str] | None = None, settings: Settings | None = None, camera: Camera | None = None,
         pick: tuple[int, int] | None = None, screenshot: str | PathLike[str] | None = None,
-        frame: int | None = None, notes: Sequence[str] = ()) -> int:
+        frame: int | None = None, notes: Sequence[str] = (), base: str = FIRST) -> int:
     """Open the window and return the exit status when it closes.
 
-    source: a file or a built-in name, the sample when None; settings: those of the first preset when None;
+    source: a file or a built-in name, the sample when None; settings: those of the preset `base` when None;
     pick: pixel (x, y) of the picture; screenshot: save the window there once everything is drawn, and end;
     notes: what to say beforehand, a line each. Raises JaartError without a display or a system library, for a scene
     that cannot be read, and, with screenshot, for any failure.
@@ -46,7 +48,8 @@ def run(source: str | PathLike[str] | None = None, settings: Settings | None = N
     app = QApplication.instance() or QApplication(["jaart"])
     app.setApplicationName("Jaart")
     window = MainWindow()
-    window.model.set_settings(settings or preset(next(iter(PRESETS))))
+    window.model.set_settings(preset(base))
+    window.model.set_settings(settings or preset(base))
     problems: list[str] = []
     end_without_a_scene(window, problems)
     if screenshot is not None:

@@ -16,6 +16,9 @@ TABS = {"Parameters": ("Statistics", "Messages"), "3D ray analyzer": ("2D projec
 #: What some are called where there is little room for it.
 SHORT = {"3D ray analyzer": "3D analyzer", "Energy along the ray": "Energy"}
 
+#: A line of text more that the bar of steps takes where it is narrow [pixels].
+LINE = 22
+
 
 class Arrangement(QObject):
     """Follows the size of the window, until somebody moves a dock: then everything stays where it was put."""
@@ -29,8 +32,8 @@ class Arrangement(QObject):
             dock.dockLocationChanged.connect(self._note)
         for title in ("Steps", "Statistics", "Messages"):
             docks[title].setTitleBarWidget(QWidget())
-        docks["Steps"].setMaximumHeight(LATE[0].height)
         self._side_by_side()
+        docks["Steps"].setMaximumHeight(LATE[0].height)
         self._busy = False
 
     def fit(self, anew: bool = False) -> None:
@@ -66,6 +69,7 @@ class Arrangement(QObject):
             self.docks[front].raise_()
 
     def _give_sizes(self) -> None:
+        self.docks["Steps"].setMaximumHeight(LATE[0].height + LINE * self.tabbed)
         side = [self.docks["Parameters"], self.docks["3D ray analyzer"]]
         self.window.resizeDocks(side, list(WIDTHS[self.tabbed]), Qt.Orientation.Horizontal)
         if not self.tabbed:

@@ -47,4 +47,4 @@ class EnergyPlot(FigurePanel):
 
     def _place(self) -> None:
         self.whole.adjustSize()
-        self.whole.move(self.width() - self.whole.width() - 6, 2)
+        self.whole.move(4, self.canvas.height() - self.whole.height() - 2)

@@ -9,7 +9,7 @@ from qtpy.QtGui import QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QP
 from qtpy.QtWidgets import QApplication, QWidget
 
 from jaart.core.camera import Camera
-from jaart.core.records import Hits
+from jaart.core.records import Hits, Quality
 from jaart.core.settings import PARAMETERS, Settings
 from jaart.gui import navigation, overlay, theme
 from jaart.gui.model import SceneModel
@@ -34,6 +34,7 @@ class ImageView(QWidget):
         self.setFont(theme.tabular(self.font()))
         self.model, self.image = model, QImage()
         self._results: tuple[Any, ...] = (None, None, None)
+        self._shown: tuple[str, Hits, Quality | None] | None = None
         self._values: tuple[Any, ...] = ()
         self._scaled: tuple[tuple[Any, ...], QPixmap] = (), QPixmap()
         self.hovered: tuple[int, int] | None = None
@@ -43,7 +44,7 @@ class ImageView(QWidget):
         self._still = QTimer(self, singleShot=True, interval=150)
         self._still.timeout.connect(self._settle)
         for signal in (model.hits_changed, model.map_changed, model.theme_changed, model.settings_changed,
-                       model.shader.changed):
+                       model.shader.changed, model.settled):
             signal.connect(self.refresh)
         model.picked_changed.connect(self.update)
 
@@ -56,7 +57,7 @@ class ImageView(QWidget):
         model, hits, before = self.model, self.model.hits, self.image
         if hits is None:
             self.image, self._values = QImage(), ()
-        elif model.quality is not None or not model.map.endswith("_error") or not self._was_exact():
+        elif model.quality is not None or not model.map.endswith("_error") or not self._keeps_errors():
             self._colour(hits)
         if self.image is not before:
             self.repaint()  # before the panels that tell its numbers
@@ -69,19 +70,20 @@ class ImageView(QWidget):
 
         model, settings = self.model, plain(self.model.settings)
         errors = model.quality if model.map.endswith("_error") else None
+        name = "shaded" if model.map.endswith("_error") and errors is None else model.map
         finished = model.shader.colours
-        results, values = (hits.t, errors, finished), (model.map, model.theme, *shading(settings))
+        results, values = (hits.t, errors, finished), (name, model.theme, *shading(settings))
         if values == self._values and all(one is other for one, other in zip(results, self._results, strict=True)):
             return
-        self._results, self._values = results, values
-        pixels = shade(hits, model.map, errors, model.theme, settings) if finished is None else finished
+        self._results, self._values, self._shown = results, values, (name, hits, model.quality)
+        pixels = shade(hits, name, errors, model.theme, settings) if finished is None else finished
         height, width = pixels.shape[:2]
         self.image = QImage(pixels.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
 
-    def _was_exact(self) -> bool:
+    def _keeps_errors(self) -> bool:
         """Whether errors are on show that the next full picture will bring anew."""
-        exact = self.model.scene is not None and self.model.scene.known
-        return exact and not self.image.isNull() and not self.model.idle
+        errors = self._shown is not None and self._shown[0] == self.model.map
+        return errors and not self.image.isNull() and self.model.computing
 
     def picture_area(self) -> QRectF:
         """Where the picture stands in the view, its shape kept."""
@@ -149,7 +151,8 @@ class ImageView(QWidget):
             overlay.draw_mark(painter, self.place_of(model.picked), model.theme)
         if hits is None:
             return
-        overlay.draw_scale(painter, self.rect(), model.map, hits, model.quality, model.theme, model.kind)
+        if self._shown is not None:  # what the colours are of, which may be older than the hits
+            overlay.draw_scale(painter, self.rect(), *self._shown, model.theme, model.kind)
         if self.hovered is not None and model.complete and self._pressed is None:
             corner = QPointF(10, 10)
             if self.place_of(self.hovered).x() < 300 and self.place_of(self.hovered).y() < 200:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from qtpy.QtCore import QObject, Signal
+from qtpy.QtCore import QObject
 
 from jaart.core.camera import Camera
 from jaart.core.records import Hits, Quality, Trace
@@ -13,49 +14,32 @@ from jaart.core.scene import Scene
 from jaart.core.settings import PRESETS, Settings, preset
 from jaart.gui import navigation, results, tasks
 from jaart.gui.computers import Computers
-from jaart.gui.look import Look
 from jaart.gui.measurer import Measurer
 from jaart.gui.navigation import Bounds
 from jaart.gui.notes import Notes
 from jaart.gui.preparing import Preparing
 from jaart.gui.shader import Shader
-from jaart.gui.suit import refused_name, suited
+from jaart.gui.signals import Signals
+from jaart.gui.suit import of_preset, refused_name
 from jaart.gui.tasks import Known, Made, Opened
 from jaart.gui.worker import Worker
 
 if TYPE_CHECKING:
     from os import PathLike
 
-#: While the camera is dragged, pictures are made smaller until one takes about this long [s].
-DRAG_SECONDS = 0.03
+    from jaart.core.chosen import Chosen
 
 #: Size of a picture in pixels when nobody says.
 PICTURE = (512, 512)
 
 
-class SceneModel(Look):
+class SceneModel(Signals):
     """Scene, settings, camera, picture, picked ray and theme, and the work that follows their changes.
 
     Pixels (x, y) count from the top left of the full picture of `size` (width, height). Files are
     read, and pictures and traces made, in a worker thread; results arrive as signals. Settings that make no sense in
-    the scene leave the last picture; `fault` holds the setting that is refused and why.
+    the scene leave the last picture; `fault` holds what is refused and why, `base` the preset's values for the scene.
     """
-
-    scene_changed = Signal()
-    settings_changed = Signal()
-    camera_changed = Signal()
-    hits_changed = Signal()
-    picked_changed = Signal()
-    trace_changed = Signal()
-    step_changed = Signal()
-    progressed = Signal(float)
-    staged = Signal(str, float)
-    begun = Signal()
-    settled = Signal()
-    failed = Signal(str)
-    fault_changed = Signal()
-    known_changed = Signal()
-    said = Signal(str)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -63,7 +47,7 @@ class SceneModel(Look):
         self.camera: Camera | None = None
         self.bounds: Bounds = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
         self.preset = next(iter(PRESETS))
-        self.settings = preset(self.preset)
+        self.settings = self.base = preset(self.preset)
         self.known: Known | None = None
         self.fault: tuple[str, str] | None = None
         self.size = PICTURE
@@ -72,6 +56,7 @@ class SceneModel(Look):
         self._full: tuple[Hits, Quality | None] | None = None
         self.picked: tuple[int, int] | None = None
         self.trace, self.step = None, 0  # type: Trace | None, int
+        self._stopped = False
         self._worker, self._painter = Worker(self), Worker(self)
         self.shader, self.measurer = Shader(self), Measurer(self)
         self.notes, self._slow = Notes(self), Preparing(self)
@@ -103,25 +88,34 @@ class SceneModel(Look):
         """Whether the picture is of the settings, and no newer one is under way."""
         return self.hits is not None and self.hits.settings.key("rays") == self.settings.key("rays")
 
+    @property
+    def halted(self) -> bool:
+        """Whether the picture that was asked for last was stopped before it was done."""
+        return self._stopped and not (self.complete and self.current and self.hits is not None
+                                      and self.hits.camera == self.camera)
+
     def open(self, source: str | PathLike[str], frame: int | None = None, camera: Camera | None = None) -> None:
         """Read a scene; when it cannot be read, `failed` says why and the old scene stays."""
-        settings, base, before = self.settings, preset(self.preset), self.scene
+        name, before = self.preset, self.scene
+        settings = self.settings if self.settings != self.base else None
         self.said.emit(f"Reading {source} …")
-        self._worker.submit("open", lambda job: tasks.read(job, source, frame, settings, base, before),
+        self._worker.submit("open", lambda job: tasks.read(job, source, frame, settings, name, before),
                             lambda opened: self._opened(opened, camera))
 
     def choose_preset(self, name: str) -> None:
         """Take a preset's values; those that make no sense in the scene are replaced, and `said` says so."""
-        self.preset, values, scene = name, preset(name), self.scene
-        if scene is None:
-            self.set_settings(values)
+        if (scene := self.scene) is None:
+            self.set_settings(preset(name))
             return
         self._worker.cancel("picture")
-        self._worker.submit("open", lambda job: suited(scene, values, values), lambda made: self._take(*made))
+        self._worker.submit("open", lambda job: of_preset(scene, name), lambda made: self._take(name, *made))
 
-    def _take(self, settings: Settings, changed: str) -> None:
+    def _take(self, name: str, settings: Settings, changed: str) -> None:
         traced = settings.key("rays") == self.settings.key("rays") and self.fault is None
+        same, self.preset, self.base = settings == self.settings, name, settings
         self.set_settings(settings)
+        if same:
+            self.settings_changed.emit()  # what the values are compared with may be new
         if traced and (self.hits is None or self.hits.camera != self.camera or not self.complete):
             self._render()  # what was under way was stopped
         if changed:
@@ -136,7 +130,9 @@ class SceneModel(Look):
         old, self.settings = self.settings, settings
         if settings == old:
             return
-        self.preset = next((name for name in PRESETS if preset(name) == settings), self.preset)
+        for name in PRESETS:
+            if preset(name) == settings:
+                self.preset, self.base = name, settings
         refused = self.fault is not None
         self._set_fault(None)
         if self.hits is not None:
@@ -193,6 +189,7 @@ class SceneModel(Look):
 
     def stop(self) -> None:
         """Stop what is being read, rendered, traced, shaded or measured; what is shown stays."""
+        self._stopped = True
         self._computers.cancel()
         self._slow.stop()
         self.said.emit("Stopped")
@@ -206,7 +203,7 @@ class SceneModel(Look):
         same = self.scene is not None and self.scene.source == scene.source and self.bounds == bounds
         for kind in ("picture", "trace"):
             self._worker.cancel(kind)
-        self.scene, self.bounds, self.known = scene, bounds, None
+        self.scene, self.bounds, self.base, self.known = scene, bounds, opened.base, None
         self._set_fault(None)
         self.hits = self.quality = self.trace = self._full = None
         self.step = 0
@@ -236,16 +233,21 @@ class SceneModel(Look):
     def _render(self, dragging: bool = False) -> None:
         if self.scene is None or self.camera is None:
             return
-        scene, settings, camera = self.scene, self.settings, self.camera
-        size = results.smaller(self.hits, self.size, DRAG_SECONDS) if dragging else self.size
+        size = results.smaller(self.hits, self.size) if dragging else self.size
+        what = self.scene, self.settings, self.camera, size, dragging, self._choose
         self._slow.start()
-        self._worker.submit("picture", lambda job: tasks.picture(job, scene, settings, camera, size, dragging),
-                            self._made, self._show, brief=dragging)
+        self._stopped = False
+        self._worker.submit("picture", lambda job: tasks.picture(job, *what), self._made, self._show, brief=dragging)
 
     def _made(self, made: Made) -> None:
         known, self.known = self.known, made.known
         self._show(made.hits)
         if made.known != known:
+            self.known_changed.emit()
+
+    def _choose(self, values: Chosen) -> None:
+        if self.known is not None and values != self.known.values:
+            self.known = replace(self.known, values=values)
             self.known_changed.emit()
 
     def show_quality(self, quality: Quality | None) -> None:
@@ -266,9 +268,8 @@ class SceneModel(Look):
     def _trace(self) -> None:
         if self.scene is None or self.camera is None or self.picked is None or self.fault is not None:
             return
-        scene, settings, camera, size, pixel = self.scene, self.settings, self.camera, self.size, self.picked
-        self._worker.submit("trace", lambda job: tasks.ray(scene, settings, camera, size, pixel), self._traced,
-                            brief=True)
+        what = self.scene, self.settings, self.camera, self.size, self.picked
+        self._worker.submit("trace", lambda job: tasks.ray(*what), self._traced, brief=True)
 
     def _traced(self, trace: Trace) -> None:
         same = self.trace is not None and self.trace.pixel == trace.pixel

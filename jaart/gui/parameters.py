@@ -78,7 +78,7 @@ class Parameters(QScrollArea):
 
     def refresh(self) -> None:
         """Show the model's settings; rows without a meaning beside the others or in the scene are hidden."""
-        settings, kind, base = self.model.settings, self.model.kind, preset(self.model.preset)
+        settings, kind, base = self.model.settings, self.model.kind, self.model.base
         name_at_fault, why = self.model.fault or ("", "")
         for name, row in self.rows.items():
             value = getattr(settings, name)
@@ -105,8 +105,9 @@ class Parameters(QScrollArea):
 
     def _show_preset(self) -> None:
         shown = [name for name, row in self.rows.items() if self.model.kind in row.about.scenes]
-        names = [name for name in PRESETS
-                 if all(getattr(preset(name), n) == getattr(self.model.settings, n) for n in shown)]
+        bases = {name: preset(name) for name in PRESETS} | {self.model.preset: self.model.base}
+        names = [name for name, base in bases.items()
+                 if all(getattr(base, n) == getattr(self.model.settings, n) for n in shown)]
         names.sort(key=lambda name: name != self.model.preset)
         with QSignalBlocker(self.presets):
             self.presets.removeItem(self.presets.findText(OWN))

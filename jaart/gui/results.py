@@ -9,6 +9,9 @@ import numpy as np
 from jaart.core.records import Hits, Trace
 from jaart.core.settings import Settings
 
+#: While the camera is dragged, pictures are made smaller until one takes about this long [s].
+DRAG_SECONDS = 0.03
+
 
 def first_of_last_start(trace: Trace) -> int:
     """The first step of the start that ended the ray, 0 without steps."""
@@ -22,10 +25,10 @@ def with_settings(hits: Hits, settings: Settings) -> Hits:
     return replace(hits, settings=settings)
 
 
-def smaller(hits: Hits | None, size: tuple[int, int], seconds: float) -> tuple[int, int]:
-    """The size of a picture that takes about so many seconds, by the last one: a half, a quarter or an eighth."""
+def smaller(hits: Hits | None, size: tuple[int, int]) -> tuple[int, int]:
+    """The size of a picture while the camera is dragged, by how long the last took: a half, a quarter or an eighth."""
     whole = 0.0 if hits is None else hits.ray_s / len(hits) * size[0] * size[1]
-    factor = next((f for f in (1, 2, 4) if whole / f**2 <= seconds), 8)
+    factor = next((f for f in (1, 2, 4) if whole / f**2 <= DRAG_SECONDS), 8)
     return -(-size[0] // factor), -(-size[1] // factor)
 
 

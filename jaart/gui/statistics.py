@@ -34,6 +34,7 @@ class StatisticsPanel(Panel):
         self._later = QTimer(self, singleShot=True, interval=PAUSE_MS)
         self._later.timeout.connect(super().mark_dirty)
         model.hits_changed.connect(self.mark_dirty)
+        model.settled.connect(self._say_if_stopped)
 
     def mark_dirty(self) -> None:
         """Draw again once the picture has stood for a moment: the panels of the ray go first."""
@@ -54,7 +55,16 @@ class StatisticsPanel(Panel):
             size, ratio, theme = (self.width(), self.height()), self.devicePixelRatioF(), self.model.theme
             self.model.draw_later(lambda: statistics_pixels(statistics(hits, errors), theme, size, ratio), self._show)
 
+    def _say_if_stopped(self) -> bool:
+        """Take away the statistics of an older picture where a coarse one stays on show."""
+        coarse = self.model.halted and not self.model.complete
+        if coarse:
+            self.picture.setText("The picture was stopped. Its statistics appear here when one is done.")
+        return coarse
+
     def _show(self, pixels: NDArray[np.uint8]) -> None:
+        if self._say_if_stopped():
+            return
         height, width, _ = pixels.shape
         image = QImage(pixels.tobytes(), width, height, 4 * width, QImage.Format.Format_RGBA8888)
         image.setDevicePixelRatio(self.devicePixelRatioF())
@@ -76,12 +86,14 @@ class StatisticsPanel(Panel):
         self.model.said.emit(f"Statistics written to {path}")
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Draw for the new size; the export buttons stay at the right edge, one below the other."""
+        """Draw for the new size; the export buttons stay in the upper right corner, above titles."""
         super().resizeEvent(event)
         self.picture.setGeometry(self.rect())
         self.mark_dirty()
-        for row, button in enumerate(self.buttons):
-            button.move(self.width() - button.width() - 6, 6 + row * (button.height() + 4))
+        left = self.width() - 6
+        for button in reversed(self.buttons):
+            left -= button.width()
+            button.move(left, 2)
             button.raise_()
 
     def _button(self, kind: str) -> QToolButton:

@@ -43,7 +43,7 @@ class Status(QStatusBar):
         """Show the numbers of a full picture."""
         if self.model.complete:
             self.figures.setText("      ".join(figures(self.model)))
-        elif self.model.hits is None:
+        elif self.model.hits is None or self.model.halted:
             self.figures.setText("")
 
     def _progress(self, share: float, what: str = "Tracing rays") -> None:
@@ -77,8 +77,16 @@ class Status(QStatusBar):
         self._late.stop()
         self._stage = "", 0.0
         self.bar.hide()
-        width, height = self.model.size
-        self.state.setText(f"Picture of {width} × {height} rays" if self.model.complete else "")
+        self.state.setText(_at_rest(self.model))
+        self.refresh()
+
+
+def _at_rest(model: SceneModel) -> str:
+    """What is shown while nothing is computed."""
+    if model.halted:
+        shown = "" if model.hits is None else ": this is the picture before" if model.complete else ": a coarse picture"
+        return f"Stopped{shown}. Changing a value begins again."
+    return "Picture of {} × {} rays".format(*model.size) if model.complete else ""
 
 
 def figures(model: SceneModel) -> list[str]:

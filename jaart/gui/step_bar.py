@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from qtpy.QtCore import Qt, QTimer
-from qtpy.QtGui import QKeyEvent
-from qtpy.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from qtpy.QtGui import QKeyEvent, QResizeEvent
+from qtpy.QtWidgets import QBoxLayout, QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from jaart.gui.model import SceneModel
 from jaart.gui.panel import step_by_key
@@ -12,6 +12,8 @@ from jaart.gui.theme import tabular
 from jaart.plot.style import LEGEND, OUTCOMES, THEMES
 
 _PLAY_MS = 700
+#: A long text of how a start ended.
+_LONG = f"start 10 of 10: {OUTCOMES['left_trust']}"
 
 
 class StepBar(QWidget):
@@ -62,6 +64,12 @@ class StepBar(QWidget):
         if not step_by_key(self.model, event):
             super().keyPressEvent(event)
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Put how a start ended below the buttons where it would be cut beside them."""
+        super().resizeEvent(event)
+        narrow = self.width() < self._line.itemAt(0).sizeHint().width() + self._longest + 20
+        self._line.setDirection(QBoxLayout.Direction.TopToBottom if narrow else QBoxLayout.Direction.LeftToRight)
+
     def _state(self) -> str:
         trace = self.model.trace
         if trace is None:
@@ -107,16 +115,21 @@ class StepBar(QWidget):
     def _arrange(self) -> None:
         self.position.setFont(tabular(self.position.font()))
         self.state.setObjectName("weak")
+        self._longest = self.state.fontMetrics().horizontalAdvance(_LONG)
         for label in (self.state, self.signs):
             label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         self.signs.setWordWrap(True)
+        self._line = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        self._line.setSpacing(2)
         buttons = QHBoxLayout()
         buttons.setSpacing(2)
         for widget in (self.first, self.back, self.position, self.forward, self.last, self.play):
             buttons.addWidget(widget)
-        buttons.addWidget(self.state, 1)
+        buttons.addStretch(0)
+        self._line.addLayout(buttons)
+        self._line.addWidget(self.state, 1)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(6, 3, 6, 3)
         rows.setSpacing(2)
-        rows.addLayout(buttons)
+        rows.addLayout(self._line)
         rows.addWidget(self.signs)

@@ -5,15 +5,31 @@ from __future__ import annotations
 from jaart.core.errors import SettingsError
 from jaart.core.parameter import Length
 from jaart.core.scene import Scene
-from jaart.core.settings import PARAMETERS, Settings
+from jaart.core.settings import PARAMETERS, Settings, preset
 from jaart.gui.values import text_of
+
+
+def of_preset(scene: Scene, name: str) -> tuple[Settings, str]:
+    """A preset's values as they suit a scene, and a line that says what was changed, "" for nothing.
+
+    What is for other kinds of scenes stays: it is hidden, and comes back with them.
+    """
+    from jaart.core.suited import suited
+
+    whole = preset(name)
+    hidden = {name: getattr(whole, name) for name, about in PARAMETERS.items() if scene.kind not in about.scenes}
+    try:
+        values = suited(scene, whole)[0].replace(**hidden)
+    except SettingsError:  # as of a cloud without spacing; the picture will say it
+        return whole, ""
+    return values, _told(scene, whole, values)
 
 
 def suited(scene: Scene, settings: Settings, base: Settings, before: Scene | None = None) -> tuple[Settings, str]:
     """Settings that make sense in a scene, and a line that says what was changed, "" for nothing.
 
-    base: the preset whose values replace those that do not suit; before: the scene that the settings were made for:
-    lengths in cells say nothing in a cloud, nor the other way round. May take seconds for a large cloud.
+    base: a preset's values in the scene, which replace those that do not suit; before: the scene that the settings
+    were made for: lengths in cells say nothing in a cloud, nor the other way round. May take seconds for a large cloud.
     """
     from jaart.core import meaning
 
@@ -28,9 +44,13 @@ def suited(scene: Scene, settings: Settings, base: Settings, before: Scene | Non
             kept = better
         else:
             break
-    changed = [f"{name} = {text_of(getattr(kept, name))}" for name in PARAMETERS
-               if getattr(kept, name) != getattr(settings, name)]
-    return kept, f"Put back, for a {scene.kind} has no other use for it: {', '.join(changed)}" if changed else ""
+    return kept, _told(scene, settings, kept)
+
+
+def _told(scene: Scene, old: Settings, new: Settings) -> str:
+    changed = [f"{name} = {text_of(getattr(new, name))}" for name in PARAMETERS
+               if getattr(new, name) != getattr(old, name)]
+    return f"Put back, for a {scene.kind} has no other use for it: {', '.join(changed)}" if changed else ""
 
 
 def refused_name(message: str) -> str:
@@ -45,12 +65,10 @@ def _in_kind(scene: Scene, settings: Settings, base: Settings, before: Scene | N
     values = {}
     for name, about in PARAMETERS.items():
         value = getattr(settings, name)
-        absolute = about.kind == "length" or name == "level"
-        if scene.kind not in about.scenes:
+        number = not isinstance(value, str) and not (isinstance(value, Length) and value.unit)
+        absolute = number and (about.kind == "length" or name == "level")
+        if scene.kind not in about.scenes or (moved and absolute):
             values[name] = getattr(base, name)
-        elif moved and absolute and not isinstance(value, str) and not (isinstance(value, Length) and value.unit):
-            preset = getattr(base, name)
-            values[name] = about.default if isinstance(preset, Length) and not preset.unit else preset
     return settings.replace(**values)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING
@@ -22,11 +23,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Opened:
-    """A scene that was read: its corners, settings that suit it, and what was changed in them."""
+    """A scene that was read: its corners, settings that suit it, the preset's there, and what was changed."""
 
     scene: Scene
     bounds: Bounds
     settings: Settings
+    base: Settings
     changed: str
 
 
@@ -53,20 +55,24 @@ class Made:
     known: Known
 
 
-def read(job: Job, source: str | PathLike[str], frame: int | None, settings: Settings, base: Settings,
+def read(job: Job, source: str | PathLike[str], frame: int | None, settings: Settings | None, preset: str,
          before: Scene | None) -> Opened:
-    """A scene and settings for it. Raises FileError for a file that cannot be read, Cancelled once it is unwanted."""
+    """A scene and settings for it: the preset's for None.
+
+    Raises FileError for a file that cannot be read, Cancelled once it is unwanted.
+    """
     from jaart.core import prepare
     from jaart.core.groups.surface import evaluates
     from jaart.core.io import load
-    from jaart.gui.suit import suited
+    from jaart.gui.suit import of_preset, suited
 
     with told(job.watch):
         scene = load(source, frame)
-        settings, changed = suited(scene, settings, base, before)
+        base, changed = of_preset(scene, preset)
+        settings, changed = (base, changed) if settings is None else suited(scene, settings, base, before)
         if scene.kind != "cloud" and evaluates(settings):
             prepare.surfels(scene, settings)
-    return Opened(scene, bounds(scene, settings), settings, changed)
+    return Opened(scene, bounds(scene, settings), settings, base, changed)
 
 
 def bounds(scene: Scene, settings: Settings) -> Bounds:
@@ -78,8 +84,8 @@ def bounds(scene: Scene, settings: Settings) -> Bounds:
 
 
 def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int],
-            dragging: bool) -> Made:
-    """A picture; coarse ones are shown while it is made."""
+            dragging: bool, take: Callable[[Chosen], None]) -> Made:
+    """A picture; coarse ones are shown while it is made, and what its settings come to is taken before that."""
     from jaart.core.meaning import check
     from jaart.core.render import render
     from jaart.core.warm import needs_compile
@@ -87,6 +93,7 @@ def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tu
     if needs_compile(scene, settings):
         job.say("Compiling kernels that are needed for the first time on this machine; this takes some seconds …")
     values = check(scene, settings)
+    job.hand(take, values)
     with told(job.watch):
         hits = render(scene, settings, camera, size, progress=None if dragging else job.progress, cancel=job.cancel,
                       picture=None if dragging else job.partial)

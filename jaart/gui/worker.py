@@ -61,6 +61,10 @@ class Job:
         """Tell what goes on."""
         self._post(self, "said", text)
 
+    def hand(self, take: Callable[[Any], None], result: Any) -> None:
+        """Give something that is known before the result to a function, in the window's thread."""
+        self._post(self, "handed", (take, result))
+
     def partial(self, result: Any) -> None:
         """Hand over a first, coarse result."""
         self._post(self, "partial", result)
@@ -188,6 +192,8 @@ class Worker(QObject):
             job.done(result)
         elif what == "partial" and job.on_partial is not None:
             job.on_partial(result)
+        elif what == "handed":
+            result[0](result[1])
         elif what == "failed":
             self.failed.emit(result)
         elif what == "refused" and not job.replaced:  # else the settings have changed since

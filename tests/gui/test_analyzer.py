@@ -41,6 +41,16 @@ def test_the_step_bar_steps_by_button_and_by_key(qtbot, standard):
     assert not bar.forward.isEnabled()
 
 
+def test_a_narrow_step_bar_says_how_a_start_ended(qtbot, standard):
+    bar = shown(qtbot, StepBar(standard), width=345, height=84)
+    pick(qtbot, standard, 3)
+    for width, below in ((345, True), (600, False), (345, True)):
+        bar.resize(width, 84)
+        QApplication.processEvents()
+        assert bar.state.width() >= bar.state.fontMetrics().horizontalAdvance("start 1 of 1: left the trust region")
+        assert (bar.state.y() > bar.back.geometry().bottom() - 4) == below
+
+
 def test_play_goes_to_the_last_step_and_stops(qtbot, standard):
     bar = shown(qtbot, StepBar(standard), height=60)
     trace = pick(qtbot, standard, 3)
@@ -89,6 +99,41 @@ def test_stepping_keeps_the_view_and_a_button_changes_it(qtbot, standard, analyz
     analyzer.look("ray")
     ahead = np.subtract(analyzer._view.camera.focal_point, analyzer._view.camera.position)
     np.testing.assert_allclose(ahead / np.linalg.norm(ahead), standard.trace.direction, atol=1e-6)
+
+
+def test_a_step_out_of_view_is_brought_into_it_from_the_same_side(qtbot, model):
+    panel = shown(qtbot, Analyzer3D(model))
+    model.set_size(128, 128)
+    model.set_settings(model.settings.replace(h=2.55))
+    model.open("splash")
+    settle(qtbot, model)
+    trace = pick_far_starts(qtbot, model)
+    qtbot.waitUntil(lambda: panel._view is not None and not panel._dirty, timeout=PATIENCE)
+    camera = panel._view.camera
+    camera.Azimuth(25)  # as a person turns it
+    looks, up = np.array(camera.GetDirectionOfProjection()), camera.up
+    assert not panel._sees(trace.query[0])
+    qtbot.keyClick(panel._view, Qt.Key.Key_Home)
+    qtbot.waitUntil(lambda: not panel._dirty)
+    assert panel._sees(trace.query[0]) and not panel._sees(trace.point)
+    np.testing.assert_allclose(camera.GetDirectionOfProjection(), looks, atol=1e-9)
+    assert camera.up == up
+    qtbot.keyClick(panel._view, Qt.Key.Key_End)
+    qtbot.waitUntil(lambda: not panel._dirty)
+    assert panel._sees(trace.query[-1]) and panel._sees(trace.point)
+    panel.close_view()
+
+
+def pick_far_starts(qtbot, model):
+    """Pick a ray that arrives far behind its first start."""
+    hits = model.hits
+    for pixel in np.flatnonzero(hits.hit & (hits.evaluations > hits.iterations)):
+        model.pick(int(pixel) % hits.size[0], int(pixel) // hits.size[0])
+        settle(qtbot, model)
+        if model.trace.hit and model.trace.t - model.trace.t_query[0] > 20:
+            model.set_step(model.trace.steps - 1)
+            return model.trace
+    raise AssertionError("no ray of the picture has starts far apart")
 
 
 def test_keys_do_not_reach_the_shortcuts_of_the_view(qtbot, standard, analyzer):

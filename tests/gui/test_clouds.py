@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from patience import PATIENCE, choose, said, settle, write_cloud
-from qtpy.QtCore import Qt
+from qtpy.QtCore import Qt, QTimer
 from qtpy.QtTest import QTest
-from qtpy.QtWidgets import QFileDialog
+from qtpy.QtWidgets import QApplication, QFileDialog
 
+from jaart import cli
 from jaart.core.settings import preset
 from jaart.gui.actions import SAMPLES
+from jaart.gui.main_window import MainWindow
 from jaart.gui.navigation import VIEWS, view
 
 LEFT = Qt.MouseButton.LeftButton
@@ -139,6 +141,50 @@ def test_a_preset_of_lattices_is_suited_to_a_cloud(qtbot, window, tmp_path):
         assert model.settings.search == "iterate"
         assert model.hits.settings == model.settings
         assert model.hits.hit.any()
+
+
+def resets(form):
+    """The rows that offer a way back to the preset's value."""
+    return [name for name, row in form.rows.items() if row.isVisibleTo(form) and row.reset.isVisibleTo(row)]
+
+
+def test_a_preset_goes_from_scene_to_scene_as_it_suits_each(qtbot, window):
+    model, form = window.model, window.docks["Parameters"].panel
+    choose(form.presets, "thesis")
+    settle(qtbot, model)
+    assert model.settings == preset("thesis")
+    model.open("bumpy")
+    settle(qtbot, model)
+    assert model.settings.max_off_centre == model.settings.h == "auto"
+    assert form.presets.currentText() == "thesis"
+    assert resets(form) == []
+    choose(form.rows["max_off_centre"].word, "none")
+    assert resets(form) == ["max_off_centre"]
+    QTest.mouseClick(form.rows["max_off_centre"].reset, LEFT)
+    assert model.settings.max_off_centre == "auto"
+    settle(qtbot, model)
+    model.open("standard")
+    settle(qtbot, model)
+    assert model.settings == preset("thesis")
+    assert resets(form) == []
+
+
+def test_a_preset_of_the_command_line_is_the_one_that_values_go_back_to(qtbot):
+    seen = []
+
+    def look():
+        for window in QApplication.topLevelWidgets():
+            if isinstance(window, MainWindow) and window.isVisible() and window.model.complete and not seen:
+                form = window.docks["Parameters"].panel
+                seen.extend([form.presets.currentText(), resets(form)])
+                window.close()
+
+    timer = QTimer(interval=50)
+    timer.timeout.connect(look)
+    timer.start()
+    assert cli.gui("splash", pick=None, screenshot=None, frame=None, camera=None, preset="thesis",
+                   set_=["tolerance=0.2"]) == 0
+    assert seen == ["own values", ["tolerance"]]
 
 
 def test_the_newest_of_two_scenes_is_shown(qtbot, cloudy):

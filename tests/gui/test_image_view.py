@@ -12,6 +12,8 @@ from qtpy.QtWidgets import QApplication
 
 from jaart.core.maps import MAPS
 from jaart.core.records import STATUS
+from jaart.core.shade import shade
+from jaart.gui import overlay
 from jaart.gui.image_view import ImageView
 from jaart.gui.overlay import numbers, ticks
 
@@ -180,3 +182,36 @@ def test_ticks_are_round_and_within_the_scale():
     assert ticks(0, 1) == [0, 0.2, 0.4, 0.6, 0.8, 1.0]
     assert ticks(3, 7) == [3, 4, 5, 6, 7]
     assert ticks(0, 1e-4)[-1] == 1e-4
+
+
+def test_bar_and_colours_change_together(qtbot, standard, view, monkeypatch):
+    monkeypatch.setattr("jaart.core.render.PATIENCE", 0.0)
+    painted, draw = [], overlay.draw_scale
+
+    def note(painter, area, name, hits, quality, *rest):
+        draw(painter, area, name, hits, quality, *rest)
+        errors = quality if name.endswith("_error") else None
+        painted.append((name, hits.size, errors is None, (pixels(view) == shade(hits, name, errors)).all()))
+
+    monkeypatch.setattr(overlay, "draw_scale", note)
+    standard.set_map("distance_error")
+    standard.set_value("h", 1.6)
+    settle(qtbot, standard)
+    view.repaint()
+    assert {(name, size, without, same) for name, size, without, same in painted} == {
+        ("distance_error", (96, 96), False, True)}
+    painted.clear()
+    standard.open("bumpy")  # of another surface there is nothing to keep: plain until it is measured
+    settle(qtbot, standard)
+    view.repaint()
+    assert painted[0][0] == "shaded"
+    assert painted[-1][:3] == ("distance_error", (96, 96), False)
+    assert all(same for *_, same in painted)
+    assert (96, 96) in {size for name, size, *_ in painted if name == "shaded"}
+
+
+def pixels(view):
+    """What the view shows (h, w, 3)."""
+    image = view.image
+    rows = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), image.bytesPerLine())
+    return rows[:, :3 * image.width()].reshape(image.height(), image.width(), 3)

@@ -155,3 +155,13 @@ def test_figures_follow_the_theme(qtbot, standard, panel):
         corner = panel.grab().toImage().pixelColor(2, panel.height() - 3)
         return all(abs(c - w) <= 8 for c, w in zip(corner.getRgb(), QColor(THEMES["dark"].face).getRgb(), strict=True))
     qtbot.waitUntil(dark)
+
+
+def test_the_button_does_not_lie_over_the_title_of_energies(qtbot, standard):
+    pick(qtbot, standard, 3)
+    panel = shown(qtbot, EnergyPlot(standard), 345, 300)
+    drawn(qtbot, panel, "Step 1")
+    axes, height = panel.canvas.figure.axes[0], panel.canvas.height()
+    title = next(text for text in axes.texts if "Step 1" in text.get_text()).get_window_extent()
+    button = panel.whole.geometry()
+    assert height - button.top() < title.y0

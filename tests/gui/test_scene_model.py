@@ -153,7 +153,7 @@ def test_the_picked_pixel_keeps_its_place_in_a_larger_picture(qtbot, standard):
 
 
 def test_a_drag_is_followed_by_small_pictures_and_ends_in_the_full_one(qtbot, standard, monkeypatch):
-    monkeypatch.setattr("jaart.gui.model.DRAG_SECONDS", 0.0)
+    monkeypatch.setattr("jaart.gui.results.DRAG_SECONDS", 0.0)
     sizes = []
     standard.hits_changed.connect(lambda: sizes.append(standard.hits.size))
     for degrees in (5, 10):

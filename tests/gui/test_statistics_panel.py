@@ -11,6 +11,7 @@ from patience import PATIENCE
 
 from jaart.core.errors import FileError
 from jaart.gui.statistics import StatisticsPanel
+from jaart.plot.style import THEMES
 
 
 def test_statistics_are_written_as_svg_and_csv(qtbot, standard, tmp_path):
@@ -44,3 +45,15 @@ def test_without_a_picture_there_is_nothing_to_export(qtbot, model, tmp_path):
     assert not any(button.isEnabled() for button in panel.buttons)
     with pytest.raises(FileError, match="no picture"):
         panel.export(tmp_path / "numbers.csv")
+
+
+@pytest.mark.parametrize("size", [(800, 240), (290, 590)])
+def test_buttons_lie_over_no_plot(qtbot, standard, size):
+    panel = shown(qtbot, StatisticsPanel(standard), *size)
+    qtbot.waitUntil(lambda: not panel.picture.pixmap().isNull(), timeout=PATIENCE)
+    image = panel.picture.pixmap().toImage()
+    for button in panel.buttons:
+        box = button.geometry()
+        colours = {image.pixelColor(x, y).name() for x in range(box.left(), box.right() + 1)
+                   for y in range(box.top(), box.bottom() + 1)}
+        assert colours == {THEMES["light"].face}

@@ -5,15 +5,17 @@ from __future__ import annotations
 import threading
 
 import pytest
-from patience import PATIENCE, settle
+from patience import PATIENCE, choose, settle
 from qtpy.QtCore import Qt
 from qtpy.QtTest import QTest
 
 import jaart.core.io
+import jaart.core.render
 from jaart.gui import stop
 
 LEFT = Qt.MouseButton.LeftButton
 READ = jaart.core.io.load
+RENDER = jaart.core.render.render
 
 
 @pytest.fixture
@@ -85,3 +87,52 @@ def test_filling_a_lattice_is_told_and_stopped_by_the_button(qtbot, window):
     settle(qtbot, model)
     assert model.complete
     assert model.hits.settings.raster == 12
+
+
+@pytest.fixture
+def held(monkeypatch):
+    """A picture goes on only to its first coarse one, until it is cancelled."""
+    def render(*given, picture, cancel, **more):
+        def shown(hits):
+            picture(hits)
+            assert cancel.wait(PATIENCE / 1000)
+
+        return RENDER(*given, picture=shown, cancel=cancel, **more)
+
+    monkeypatch.setattr(jaart.core.render, "render", render)
+    monkeypatch.setattr(jaart.core.render, "PATIENCE", 0.0)
+    return monkeypatch
+
+
+def test_a_stopped_picture_is_called_so_and_has_no_numbers_of_another(qtbot, window, held):
+    model, status, panel = window.model, window.statusBar(), window.docks["Statistics"].panel
+    qtbot.waitUntil(lambda: not panel.picture.pixmap().isNull(), timeout=PATIENCE)
+    model.set_value("h", 1.2)
+    qtbot.waitUntil(lambda: not model.complete, timeout=PATIENCE)
+    press_stop(qtbot, window)
+    assert status.state.text() == "Stopped: a coarse picture. Changing a value begins again."
+    assert status.figures.text() == ""
+    assert panel.picture.pixmap().isNull()
+    assert panel.picture.text().startswith("The picture was stopped.")
+    window.actions_.dark.trigger()
+    assert panel.picture.pixmap().isNull()
+    held.undo()
+    model.set_value("h", 1.3)
+    settle(qtbot, model)
+    qtbot.waitUntil(lambda: not panel.picture.pixmap().isNull(), timeout=PATIENCE)
+    assert status.state.text() == "Picture of 192 × 192 rays"
+    assert "of rays hit" in status.figures.text()
+
+
+def test_words_follow_a_value_before_its_picture_is_done(qtbot, window, held):
+    model, rows = window.model, window.docks["Parameters"].panel.rows
+    choose(rows["trust"].word, "radius")
+    model.set_value("h", 0.8)
+    slider = rows["h"].slider
+    slider.setFocus()
+    QTest.keyClick(slider, Qt.Key.Key_Right)
+    qtbot.waitUntil(lambda: rows["radius"].box.text() == "2.65625", timeout=PATIENCE)  # 3.125 h
+    assert model.computing and not model.complete
+    assert rows["trust"].box.text() == rows["radius"].box.text()
+    model.stop()
+    settle(qtbot, model)

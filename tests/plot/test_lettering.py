@@ -210,3 +210,12 @@ def test_letters_are_in_files_without_pixels():
         figure.savefig(file, format=kind)
         assert sign in file.getvalue()
         assert b"<image" not in file.getvalue()
+
+
+def test_a_label_at_the_upper_edge_of_an_axes_stays_below_it():
+    axes = Figure(figsize=(4, 3), dpi=100).add_subplot()
+    axes.set_ylim(0, 1)
+    style.label(axes, LIGHT, [(0.2, 1.0, "Q2", "#0072b2"), (0.8, 0.5, "Q1", "#0072b2")])
+    high, middle = axes.texts
+    assert high.get_window_extent().y1 <= axes.bbox.y1
+    assert middle.get_window_extent().y0 > axes.transData.transform((0.8, 0.5))[1]
