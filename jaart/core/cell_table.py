@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core import memory
 from jaart.core.bricks import brick_slots
 from jaart.core.chosen import HALF_DIAGONAL, Chosen, counts_nearest
 from jaart.core.empty_space import FARTHEST, bricks_within, empty_space
@@ -82,6 +83,8 @@ def _check(found: Surfels, reach: Callable[[Array], float], what: str) -> None:
     """Raise SettingsError where what a picture asks for would not fit; reach: how far from a surfel others count, of
     their distances from it.
     """
+    if memory.room_for_all(len(found), 6):
+        return
     near = []
     for one in range(0, len(found), max(len(found) // COUNTED, 1)):
         distance = np.empty(len(found))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core import cloud, orient
+from jaart.core import cloud, memory, orient
 from jaart.core.balls import Cloud
 from jaart.core.chosen import Chosen
 from jaart.core.kernels.gather import Grid
@@ -75,6 +75,8 @@ def cloud_of(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
 
 def _check(grid: Grid, centres: Array, reach: Array, what: str) -> None:
     """Raise SettingsError where the points near the balls that a picture asks for would not fit into memory."""
+    if memory.room_for_all(max(len(centres), len(grid.keys)), 6):
+        return
     some = slice(None, None, max(len(centres) // COUNTED, 1))
     near = [_near(grid, *ball) for ball in zip(centres[some], reach[some].tolist(), strict=True)]
     check_near(near, len(centres), 6 if len(grid.normals) else 3, what)

@@ -35,10 +35,17 @@ def limit() -> int:
         return 4 << 30
 
 
-def sparse(shape: tuple[int, ...], kind: type[Any] = np.float64) -> NDArray[Any]:
-    """Zeros, of which only those pages take memory that are used: not the many that the system would take at once."""
+def sparse(shape: tuple[int, ...], what: str, kind: type[Any] = np.float64) -> NDArray[Any]:
+    """Zeros, of which only those pages take memory that are used: not the many that the system would take at once.
+
+    what: names in an error what asks for them. Raises SettingsError where the system refuses.
+    """
     count = math.prod(shape)
-    room = mmap.mmap(-1, max(count * np.dtype(kind).itemsize, 1))
+    size = max(count * np.dtype(kind).itemsize, 1)
+    try:
+        room = mmap.mmap(-1, size)
+    except (OSError, OverflowError, ValueError):
+        raise SettingsError(f"{what}: the system gives no room of {words(size)}") from None
     with suppress(AttributeError, OSError):  # only where the system has larger pages
         room.madvise(mmap.MADV_NOHUGEPAGE)
     return np.frombuffer(room, kind, count).reshape(shape)
@@ -57,6 +64,11 @@ def check(needed: float, what: str) -> None:
     """Raise SettingsError where something needs more bytes than it may take."""
     if needed > limit():
         raise SettingsError(f"{what}: needs {words(needed)} of memory, more than the {words(limit())} it may take")
+
+
+def room_for_all(count: int, parts: int) -> bool:
+    """Whether there is room even if all of so many surfels were near each place that a picture asks for."""
+    return min(count, ASKED) * count * (8 * parts + 4) <= limit()
 
 
 def check_near(sizes: Sequence[int], places: int, parts: int, what: str) -> None:

@@ -99,7 +99,8 @@ class Centres:
 
 def centres_for(sites: Sites) -> Centres:
     """Room for as many as there are cells near a surfel; a page of it costs memory once it is used."""
-    return Centres(sparse(sites.slots.shape, np.int64), sparse((len(sites.slots), GUESS_WIDTH)))
+    what = "polynomials at the cells' centres"
+    return Centres(sparse(sites.slots.shape, what, np.int64), sparse((len(sites.slots), GUESS_WIDTH), what))
 
 
 @dataclass(frozen=True, eq=False)

@@ -52,7 +52,7 @@ Ints = NDArray[np.int64]
 #: Promises closer to a hit than this, in h, are of the same sheet.
 _SAME_SHEET = 0.25
 #: What a ray lacks for which more balls are to be listed.
-MORE_BALLS = 0
+MORE_BALLS, NO_MORE = 0, -1
 _ZERO: Any = np.int64(0)
 _NOT_ASKED: Any = np.int64(-1)
 #: Farther than this from what is kept at a ball's centre, in h, no origin is on the surface.
@@ -212,7 +212,7 @@ def unfinished(end: RayEnd) -> RayEnd:
 def finished(best: RayEnd, last: RayEnd, visited: int) -> RayEnd:
     """The best hit with the work that all starts took."""
     return RayEnd(best.state, best.t, best.point, best.n, best.energy, best.off, best.iterations, last.evaluations,
-                  last.used, visited, last.lowered, best.gap, last.rows, NOTHING)
+                  last.used, visited, last.lowered, best.gap, last.rows, NO_MORE)
 
 
 @kernel(STRICT, inline=True)

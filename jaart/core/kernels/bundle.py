@@ -36,7 +36,7 @@ ALONE = -1
 _COLUMN = [np.uint64(ROOM * i) for i in range(5)]
 X, Y, Z, RADIUS, INSIDE = _COLUMN[0], _COLUMN[1], _COLUMN[2], _COLUMN[3], _COLUMN[4]
 #: By what share a cone is widened, and a ball in the test that goes before the exact one, against rounding.
-_WIDER, _LARGER = 1e-9, 1.0 + 1e-14
+_WIDER, _LARGER, _ROUNDED = 1e-9, 1.0 + 1e-14, 1e-15
 
 
 class Room(NamedTuple):
@@ -189,7 +189,7 @@ def test_all(columns: Array, count: Unsigned, o: Vector, d: Vector) -> None:
         x, y, z = columns[X + i] - o[0], columns[Y + i] - o[1], columns[Z + i] - o[2]
         foot, radius = x * d[0] + y * d[1] + z * d[2], columns[RADIUS + i]
         x, y, z = x - foot * d[0], y - foot * d[1], z - foot * d[2]
-        inside = radius * radius * _LARGER - (x * x + y * y + z * z)
+        inside = radius * (radius * _LARGER + _ROUNDED * abs(foot)) - (x * x + y * y + z * z)
         columns[INSIDE + i] = inside if foot >= -radius else -1.0
 
 
