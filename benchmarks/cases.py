@@ -57,7 +57,6 @@ def few() -> Iterator[Case]:
     """Small ones, for a short run."""
     yield from (model(raster, (SMALL,)) for raster in (16, 32))
     yield bumpy(2000, (SMALL,), ("best",))
-    yield scanned("no such cloud", (SMALL,))
 
 
 def model(raster: int, sizes: tuple[Size, ...]) -> Case:

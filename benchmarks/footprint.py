@@ -26,6 +26,14 @@ def peak(work: Callable[[], T]) -> tuple[T, float | None]:
     return result, None if before is None else max(0.0, (_bytes("VmHWM") - before) / MIB)
 
 
+def highest() -> int | None:
+    """The most bytes of memory that the process had since `peak` was asked last, None where nobody knows."""
+    try:
+        return _bytes("VmHWM")
+    except OSError:
+        return None
+
+
 def resident() -> int | None:
     """Bytes of memory that the process has now, None where nobody knows."""
     try:

@@ -28,6 +28,8 @@ def main() -> None:
                         help="compare on this one alone; may be given again")
     parser.add_argument("--small", action="store_true", help="pictures of 512x512 alone")
     asked = parser.parse_args()
+    if asked.quick and asked.case:
+        parser.error("--case picks from the whole comparison; expected it without --quick, perhaps with --small")
     asked.output.mkdir(parents=True, exist_ok=True)
     print(machine.words(), flush=True)
     wanted = cases.few() if asked.quick else cases.chosen(asked.case, cases.SIZES[:1] if asked.small else cases.SIZES)

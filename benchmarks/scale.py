@@ -61,12 +61,15 @@ def row_of(kind: str, size: int, picture: Sequence[int], before: Sequence[Row]) 
 
 
 def expected(kind: str, size: int, before: Sequence[Row]) -> float | None:
-    """Bytes that a size will need if the peak grows as its data do; None where nothing smaller was measured."""
+    """Bytes that a size will need; None where nothing smaller was measured.
+
+    The peak of the preparation grows as the data do; what pictures take is counted once more as it was.
+    """
     known = [row for row in before if row.kind == kind and row.peak_bytes is not None]
     if not known:
         return None
     times = (size / known[-1].size) ** (3 if kind == "lattice" else 1)
-    return times * (known[-1].data_bytes + known[-1].peak_bytes)
+    return times * (known[-1].data_bytes + known[-1].peak_bytes) + (known[-1].whole_bytes or 0)
 
 
 def available() -> float | None:

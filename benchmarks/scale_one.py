@@ -11,25 +11,27 @@ import gc
 import json
 import statistics
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import suppress
+from mmap import mmap
 from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 import jaart
-from benchmarks.footprint import MIB, peak, resident
+from benchmarks.footprint import MIB, highest, peak, resident
 from benchmarks.scale_data import scene_of
 from jaart.core import prepare
-from jaart.core.places import places_of
+from jaart.core.places import Places, places_of
 from jaart.core.prepare import Prepared
 from jaart.core.suited import suited
 
 #: Sizes whose picture loads the kernels before anything is measured.
 WARM = {"lattice": 16, "cloud": 500}
 #: Pictures with everything kept.
-PICTURES = 3
+PICTURES = 5
 #: Arrays that are named: those of at least so many bytes an item.
 NAMED = 1.0
 
@@ -39,22 +41,32 @@ def measured(kind: str, size: int, picture: tuple[int, int]) -> dict[str, Any]:
     warm = scene_of(kind, WARM[kind])
     jaart.render(warm, suited(warm, jaart.preset("best"))[0], size=(16, 16))
     scene = scene_of(kind, size)
-    settings, camera = suited(scene, jaart.preset("best"))[0], jaart.Camera.fit(scene, size=picture)
     data, before = (scene.levels if kind == "lattice" else scene.points).nbytes, settled()
-    ready, grown = peak(lambda: prepare.prepared(scene, settings))
+    begin = time.perf_counter()
+    (settings, ready), grown = peak(lambda: made(scene))
+    seconds = time.perf_counter() - begin
     prepared = settled()
-    items, arrays = len(ready.surfels), named_arrays(scene._kept)
+    items, arrays = len(ready.surfels), named_arrays(scene)
+    camera = jaart.Camera.fit(scene, size=picture)
     first = jaart.render(scene, settings, camera, picture)
     hits = [jaart.render(scene, settings, camera, picture) for _ in range(PICTURES)]
     places, place_bytes = touched(ready)
-    return {"kind": kind, "size": size, "data_bytes": data, "items": items, "prep_s": ready.seconds,
+    return {"kind": kind, "size": size, "data_bytes": data, "items": items, "prep_s": seconds,
             "peak_bytes": None if grown is None else grown * MIB,
             "kept_bytes": None if before is None else prepared - before, "array_bytes": sum(arrays.values()),
-            "first_s": ready.seconds + first.ray_s,
+            "first_s": seconds + first.ray_s,
             "ray_us": 1e6 * statistics.median(h.ray_s for h in hits) / len(first),
             "evaluations": int(first.evaluations.sum()) / max(1, int(first.hit.sum())), "hits": int(first.hit.sum()),
-            "touched": places, "touched_bytes": place_bytes,
+            "touched": places, "touched_bytes": place_bytes, "whole_bytes": highest(),
             "arrays": {name: round(n / items, 1) for name, n in arrays.items() if n / items >= NAMED}}
+
+
+def made(scene: jaart.Scene) -> tuple[jaart.Settings, Prepared]:
+    """The settings, some of which the scene chooses, and all that is there before the first ray."""
+    settings = suited(scene, jaart.preset("best"))[0]
+    ready = prepare.prepared(scene, settings)
+    assert ready.tracer.sites.pool.size
+    return settings, ready
 
 
 def settled() -> int | None:
@@ -71,11 +83,12 @@ def touched(ready: Prepared) -> tuple[int, int]:
     return kept.gathered, kept.block_bytes
 
 
-def named_arrays(kept: dict[Any, Any]) -> dict[str, int]:
-    """Bytes of the arrays that a scene keeps, by stage and field, each memory once, the largest first."""
+def named_arrays(scene: jaart.Scene) -> dict[str, int]:
+    """Bytes of the arrays that a scene keeps beside its data, by stage and field, each memory once, largest first."""
     found: dict[str, int] = {}
     seen: set[int] = set()
-    for stage, (_, value) in kept.items():
+    list(arrays_in((scene.levels, scene.points, scene.normals), "data", seen))
+    for stage, (_, value) in scene._kept.items():
         for name, array in arrays_in(value, str(stage), seen):
             found[name] = found.get(name, 0) + array.nbytes
     return dict(sorted(found.items(), key=lambda pair: -pair[1]))
@@ -89,20 +102,23 @@ def arrays_in(value: Any, name: str, seen: set[int]) -> Iterator[tuple[str, np.n
         owner = value
         while isinstance(owner.base, np.ndarray):
             owner = owner.base
-        if id(owner) not in seen:
+        as_used = isinstance(getattr(owner.base, "obj", owner.base), mmap)  # memory.sparse
+        if id(owner) not in seen and not as_used:
             yield name, owner
         seen |= {id(owner), id(value)}
-        return
+        value = owner.base
     for part, inner in parts(value):
         yield from arrays_in(inner, f"{name}.{part}", seen)
 
 
 def parts(value: Any) -> list[tuple[str, Any]]:
     """The fields of a record, the members of a tuple; nothing of anything else."""
-    if dataclasses.is_dataclass(value):
-        return [(f.name, getattr(value, f.name)) for f in dataclasses.fields(value)]
     if isinstance(value, cKDTree):  # what else it has, its nodes, only the system sees
         return [("data", value.data), ("indices", value.indices)]
+    if isinstance(value, Places):
+        return [("slots", value.slots), ("source", value.alive), ("chunks", tuple(value.chunks))]
+    if dataclasses.is_dataclass(value):
+        return list(vars(value).items())
     if hasattr(value, "_asdict"):
         return list(value._asdict().items())
     return [(str(i), v) for i, v in enumerate(value)] if isinstance(value, tuple) else []

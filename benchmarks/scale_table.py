@@ -14,7 +14,7 @@ KEEP, TOUCHED = 300, 4096
 COLUMNS = (("items", 10, ",d", "items"), ("prep_s", 8, ".3f", "prep_s"), ("peak B", 8, ".0f", "peak_each"),
            ("kept B", 8, ".0f", "kept_each"), ("arrays B", 8, ".0f", "arrays_each"), ("touched", 9, ",d", "touched"),
            ("B each", 7, ".0f", "touched_each"), ("first_s", 8, ".2f", "first_s"), ("us/ray", 7, ".2f", "ray_us"),
-           ("hits", 7, "d", "hits"))
+           ("hits", 7, "d", "hits"), ("GiB", 6, ".2f", "whole_gib"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,11 +22,12 @@ class Row:
     """What was measured of one size; None where it was not, and note says why.
 
     kind, size: "lattice" of size^3 cells or "cloud" of size points; data_bytes: of the levels or points themselves,
-    beyond which all other bytes are; items: interface cells or points; prep_s: one preparation, kernels
-    loaded before; peak_bytes: that the process grew by at most meanwhile; kept_bytes: that it is larger by after it;
-    array_bytes: of the arrays that the scene keeps then, the named ones in arrays, bytes an item; first_s: preparation
-    and the first picture; ray_us: a ray with everything kept, median of pictures; evaluations: of a hit in the first
-    picture; touched, touched_bytes: cells or balls with neighbours written down, and these neighbours.
+    beyond which all other bytes are; items: interface cells or points; prep_s: one preparation with the choice of
+    settings, kernels loaded before; peak_bytes: that the process grew by at most meanwhile; kept_bytes: that it is
+    larger by after it; array_bytes: of the arrays that the scene keeps then, the named ones in arrays, bytes an item;
+    first_s: preparation and the first picture; ray_us: a ray with everything kept, median of pictures; evaluations: of
+    a hit in the first picture; touched, touched_bytes: cells or balls with neighbours written down, and these;
+    whole_bytes: the most that the process held, from the preparation to the last picture.
     """
 
     kind: str
@@ -43,6 +44,7 @@ class Row:
     hits: int | None = None
     touched: int | None = None
     touched_bytes: int | None = None
+    whole_bytes: int | None = None
     arrays: dict[str, float] = field(default_factory=dict)
     note: str = ""
 
@@ -65,6 +67,10 @@ class Row:
     @property
     def touched_each(self) -> float | None:
         return None if not self.touched else (self.touched_bytes or 0) / self.touched
+
+    @property
+    def whole_gib(self) -> float | None:
+        return None if self.whole_bytes is None else self.whole_bytes / 2**30
 
     def _each(self, count: float | None) -> float | None:
         return None if count is None or not self.items else count / self.items

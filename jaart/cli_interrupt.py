@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -39,5 +40,7 @@ def beside(work: Callable[[], T]) -> T:
 
 def leave(status: int) -> NoReturn:
     """End the process without its threads: what they do is worth nothing, and what they write is removed."""
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second Ctrl-C would leave what is half written
     with none_written():
         os._exit(status)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 import threading
 import time
@@ -57,8 +58,9 @@ class Bar:
         if self._bar is not None and bool(self._bar.total) != bool(total):
             self._clear()
         if self._bar is None:
+            columns, rows = shutil.get_terminal_size()  # 80 and 24 for a terminal that does not tell
             self._bar = tqdm(desc=what, total=total or None, unit_scale=True, leave=False, delay=TICK,
-                             bar_format=None if total else _ENDLESS)
+                             ncols=columns, nrows=rows, bar_format=None if total else _ENDLESS)
             self._bar.start_t -= time.monotonic() - self._since
         self._bar.total, self._bar.n = total or None, done
         self._bar.refresh()

@@ -63,7 +63,7 @@ def _lattice_record(scene: Scene, settings: Settings) -> dict[str, Any]:
     solids = None if scene.model is None else [_solid(s) for s in scene.model.solids]
     return {
         "source": scene.source, "kind": scene.kind, "size": list(levels.shape), "cells": int(levels.size),
-        "interface_cells": int(interface.sum()), "surfels": len(surfels), "without_normal": surfels.without_normal,
+        "interface_cells": len(interface), "surfels": len(surfels), "without_normal": surfels.without_normal,
         "levels": [float(levels.min()), float(levels.max())], "spacing": list(scene.spacing),
         "origin": list(scene.origin), "frame": scene.frame, "frames": scene.frames, "time": scene.time,
         "solids": solids,

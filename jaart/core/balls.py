@@ -9,17 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels import ball_ray
-from jaart.core.kernels.ball_ray import Balls
+from jaart.core.kernels.bundle import NODES, ROOM, Room
 from jaart.core.kernels.gather import Grid, gather_ball
 from jaart.core.kernels.guess import GUESS_WIDTH
 from jaart.core.kernels.leaving import ROUNDING
+from jaart.core.kernels.pierce import LANES, Balls
 from jaart.core.kernels.pinhole import View
 from jaart.core.kernels.records import Out, Plan, Sites
 from jaart.core.kernels.tree import Tree
-from jaart.core.places import HEAP, Places, Pool, address, places_of
+from jaart.core.places import HEAP, Places, Pool, address, places_of, served
 from jaart.core.scene import Array
-from jaart.core.tiles import Pixels, columns_for
-from jaart.core.tracers import NO_BEGINS, NO_BLOCKS, NO_LOG, all_of
+from jaart.core.tiles import Pixels
+from jaart.core.tracers import NO_BEGINS, NO_BLOCKS, NO_LOG
 
 Ints = NDArray[np.int64]
 
@@ -38,6 +39,13 @@ class Cloud:
     reach: Array
     tree: Tree
     offset: Array
+
+    @cached_property
+    def leaves(self) -> Array:
+        """The parts of the balls' centres and their radii, as of `Balls`."""
+        made = np.zeros((4, len(self.radii) + LANES))
+        made[:3, :-LANES], made[3, :-LANES] = self.centres[self.tree.order].T, self.radii[self.tree.order]
+        return made.ravel()
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,22 +98,28 @@ class CloudTracer:
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
               any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
         """Trace some rays, in the cloud's own coordinates, into their rows of the columns; see `Tracer`."""
-        local, ways, mine = origins[pixels] - self.cloud.offset, directions[pixels], columns_for(len(pixels))
         blur = ROUNDING * float(np.abs(self.cloud.offset).max())
+        x, y, z = self.cloud.offset.tolist()
+        done, room = 0, bundle_room()
 
-        def rest(sites: Sites, pool: Pool, rays: Pixels) -> tuple[int, int]:
+        def ask(sites: Sites, pool: Pool) -> int:
+            nonlocal done
             pool.have_heap(HEAP)
-            balls = Balls(sites, self.cloud.radii, self.cloud.tree, int(self.stretches), int(any_hit), blur)
-            done, written = ball_ray.trace_ball_rays(balls, self.plan, local, ways, rays, mine, log, pool.work,
-                                                     pool.fit, pool.keys, pool.items)
-            return done, written
+            cloud = self.cloud
+            balls = Balls(sites, cloud.radii, cloud.tree, cloud.leaves, int(self.stretches), int(any_hit), (x, y, z),
+                          blur)
+            done, written = ball_ray.trace_ball_rays(balls, self.plan, origins, directions, pixels, done, out, log,
+                                                     room, pool.work, pool.fit, pool.keys, pool.items)
+            return int(written)
 
-        rows = all_of(self.sites, np.arange(len(pixels)), rest)
-        mine.point[:] += self.cloud.offset
-        for name, column in out._asdict().items():
-            column[pixels] = getattr(mine, name)
-        return rows
+        return served(self.sites, ask)
 
     def blocks(self, view: View) -> Array:
         """Nothing is known: the tree leads rays through what is empty."""
         return NO_BLOCKS
+
+
+def bundle_room() -> Room:
+    """Room for the balls of a bundle."""
+    return Room(np.empty(5 * ROOM), np.empty(ROOM, np.int64), np.empty(ROOM, np.int64), np.empty(NODES),
+                np.empty(NODES, np.int64))

@@ -2,127 +2,103 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core.bricks import BRICK, brick_slots
+from jaart.core import memory
+from jaart.core.bricks import brick_slots
 from jaart.core.chosen import HALF_DIAGONAL, Chosen, counts_nearest
+from jaart.core.empty_space import FARTHEST, bricks_within, empty_space
 from jaart.core.kernels import table
 from jaart.core.kernels.cell_gather import gather_cell
-from jaart.core.kernels.records import Cell, Cells, Sites
-from jaart.core.places import Ints, Places, address, check, listed
+from jaart.core.kernels.nearest_gather import gather_nearest
+from jaart.core.kernels.records import Cell, Cells, Empty, Sites
+from jaart.core.memory import COUNTED, check_near, pieces
+from jaart.core.places import Ints, Places, address
 from jaart.core.scene import Array
 from jaart.core.surfels import Surfels
 
-#: Nearest surfels are listed for cells up to so many cells from one with a surfel.
+#: Nearest surfels are gathered for cells up to so many cells from one with a surfel.
 KNN_HALO = 2
-#: A picture asks for about one cell a pixel; the surfels near so many are counted before it begins.
-CELLS_ASKED, CELLS_COUNTED = 1 << 18, 16
+#: Distances from surfels are told cell by cell up to this at least: with fewer rays would visit more cells.
+SKIPPED = 12
 
 
 def cell_table(found: Surfels, shape: Cell, values: Chosen, k: int) -> Cells:
-    """A lattice's cells with the surfels that may count at a point in them.
+    """A lattice's cells with the surfels that may count at a point in them, which are gathered when a ray asks.
 
     shape: cells along each axis; values: which neighbourhood, and its radius; k: of the nearest ones. A cell of
-    `ball` and `knn` holds what counts at any of its points; which of them counts at one, `weigh` decides. The nearest
-    are listed at once, what lies within a radius when a ray asks. Raises SettingsError when what rays may ask for would
-    not fit into memory.
+    `ball` and `knn` holds what counts at any of its points; which of them counts at one, `weigh` decides. Raises
+    SettingsError when what rays may ask for would not fit into memory.
     """
-    empty = np.full(shape, 255, np.uint8)
-    empty[tuple(found.cells.T)] = 0
-    table.fill_empty(empty)
-    if counts_nearest(values.neighbourhood) and len(found):
-        sites = _nearest(found, empty, k, exact=values.neighbourhood == "knn")
-        return Cells(sites, empty, min(KNN_HALO, int(empty.max())), 0, 0.0)
+    if counts_nearest(values.neighbourhood):
+        return _nearest(found, shape, k, 2 * HALF_DIAGONAL if values.neighbourhood == "knn" else 0.0)
     radius = values.radius + (HALF_DIAGONAL if values.neighbourhood == "ball" else 0.0)
-    halo = table.widest(found.cells, found.offset, radius, empty, min(_cells_away(found, shape, radius), 255))
-    return Cells(_within(found, empty, radius, halo), empty, halo, 0, 0.0)
+    return _within(found, shape, radius)
 
 
-def _cells_away(found: Surfels, shape: Cell, radius: float) -> int:
-    """How many cells a cell and one with a surfel near it may be apart."""
-    farthest = radius + float(np.abs(found.offset).max(initial=0.0))
-    return int(min(farthest, max(shape)))
-
-
-def _within(found: Surfels, empty: NDArray[np.uint8], radius: float, halo: int) -> Sites:
-    """The surfels within a radius of each cell's centre, which are gathered when somebody asks."""
-    shape = (empty.shape[0], empty.shape[1], empty.shape[2])
-    order, rows = _rows(found, shape)
-    lengths = np.array([radius, np.abs(found.offset).max(initial=0.0)])
-    own = [np.ascontiguousarray(a) for a in (found.cells, found.offset, found.normal)]
-    alive: tuple[NDArray[Any], ...] = (rows, order, *own, lengths)
-    addresses = [address(array) for array in alive]
-    source = [shape[0], shape[1], len(found), *addresses[:5], _cells_away(found, shape, radius), addresses[5]]
+def _within(found: Surfels, shape: Cell, radius: float) -> Cells:
+    """The surfels within a radius of each cell's centre."""
     what = f"radius = {radius:g} cells"
-    near = _near_some(found, radius) * min(len(found), CELLS_ASKED)
-    check(near * (6 * 8 + 4), what)
-    slots = brick_slots(shape, _least(empty) <= halo) if len(found) else np.zeros(empty.size, np.int64)
-    return Places(shape, np.empty((0, 3)), slots, gather_cell, source, 6, 0, alive, what).sites
+    _check(found, lambda distance: radius, what)
+    most = min(int(min(radius + _largest(found), max(shape))), FARTHEST)
+    empty = empty_space(found.cells, shape, max(most, SKIPPED))
+    halo = table.widest(found.cells, found.offset, radius, empty, most)
+    return Cells(_sites(found, empty, halo, gather_cell, (radius, 0.0), 0, what), empty, halo, 0, 0.0)
 
 
-def _near_some(found: Surfels, radius: float) -> float:
-    """The mean number of surfels within a radius of some of them."""
-    points, some = found.points, found.points[::max(len(found) // CELLS_COUNTED, 1)]
-    near = [int((((points - x) ** 2).sum(axis=1) <= radius * radius).sum()) for x in some]
-    return sum(near) / max(len(near), 1)
+def _nearest(found: Surfels, shape: Cell, k: int, beyond: float) -> Cells:
+    """The k surfels nearest to the centres of cells near a surfel, of equally far ones those that come first.
+
+    beyond: how much farther others may be that are gathered with them. A point in the cell is as far from a surfel as
+    the centre but for half a diagonal: so with a whole one, all are there that may be among the k nearest of any point.
+    """
+    what = f"k = {k}"
+    _check(found, lambda distance: float(np.partition(distance, min(k, len(found)) - 1)[min(k, len(found)) - 1])
+           + beyond, what)
+    empty = empty_space(found.cells, shape, SKIPPED)
+    return Cells(_sites(found, empty, KNN_HALO, gather_nearest, (0.0, beyond), k, what), empty, KNN_HALO, 0, 0.0)
+
+
+def _sites(found: Surfels, empty: Empty, halo: int, gatherer: Any, lengths: tuple[float, float], k: int,
+           what: str) -> Sites:
+    """The cells that have surfels near; arguments as of kernels/cell_gather.py."""
+    order, rows = _rows(found, empty.shape)
+    own = [np.ascontiguousarray(a) for a in (found.cells, found.offset, found.normal)]
+    alive: tuple[NDArray[Any], ...] = (rows, order, *own, np.array([lengths[0], _largest(found), lengths[1]]))
+    source = [*empty.shape[:2], len(found), *(address(array) for array in alive), k, halo]
+    slots = brick_slots(bricks_within(empty, halo if len(found) else -1))
+    return Places(empty.shape, np.empty((0, 3)), slots, gatherer, source, 6, 0, alive, what).sites
+
+
+def _largest(found: Surfels) -> float:
+    """The largest part of an offset."""
+    return float(max(found.offset.max(initial=0.0), -found.offset.min(initial=0.0)))
+
+
+def _check(found: Surfels, reach: Callable[[Array], float], what: str) -> None:
+    """Raise SettingsError where what a picture asks for would not fit; reach: how far from a surfel others count, of
+    their distances from it.
+    """
+    if memory.room_for_all(len(found), 6):
+        return
+    near = []
+    for one in range(0, len(found), max(len(found) // COUNTED, 1)):
+        distance = np.empty(len(found))
+        for piece in pieces(len(found)):
+            apart = (found.cells[piece] - found.cells[one]) + (found.offset[piece] - found.offset[one])
+            distance[piece] = np.sqrt(np.einsum("ij,ij->i", apart, apart))
+        near.append(int((distance <= reach(distance)).sum()))
+    check_near(near, len(found), 6, what)
 
 
 def _rows(found: Surfels, shape: Cell) -> tuple[NDArray[np.int32], Ints]:
     """The surfels in the order of their cells, and where each row of cells along z begins in it (nx·ny + 1,)."""
     row = found.cells[:, 0].astype(np.int64) * shape[1] + found.cells[:, 1]
     order = np.argsort(row * shape[2] + found.cells[:, 2], kind="stable").astype(np.int32)
-    return order, np.searchsorted(row[order], np.arange(shape[0] * shape[1] + 1))
-
-
-def _least(empty: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """The least distance from a surfel in each brick."""
-    for axis in range(3):
-        lines = np.moveaxis(empty, axis, 0)
-        least = lines[::BRICK].copy()
-        for first in range(1, BRICK):
-            part = lines[first::BRICK]
-            np.minimum(least[:len(part)], part, out=least[:len(part)])
-        empty = np.moveaxis(least, 0, axis)
-    return empty
-
-
-def _nearest(found: Surfels, empty: NDArray[np.uint8], k: int, exact: bool) -> Sites:
-    """The k surfels nearest to each cell's centre, for the cells near a surfel.
-
-    exact: list all that may be among the k nearest of any point in the cell: their distance from the centre
-    exceeds that of the k-th by no more than the cell's diagonal.
-    """
-    from scipy.spatial import cKDTree
-
-    tree = cKDTree(found.points)
-    cells = np.argwhere(empty <= KNN_HALO)
-    distance, ids = tree.query(cells + 0.5, min(k, len(found)))
-    distance, ids = distance.reshape(len(cells), -1), ids.reshape(len(cells), -1)
-    if exact:
-        lists = tree.query_ball_point(cells + 0.5, distance[:, -1] * (1 + 1e-12) + 2 * HALF_DIAGONAL,
-                                      return_sorted=True)
-        sizes = np.array([len(one) for one in lists], np.int64)
-        ids = np.concatenate(lists).astype(np.int32) if len(lists) else np.empty(0, np.int32)
-    else:
-        ids, sizes = np.sort(ids, axis=1).astype(np.int32).ravel(), np.full(len(cells), len(ids[0]), np.int64)
-    check(len(ids) * (6 * 8 + 4), f"k = {k}")
-    counts = np.zeros(empty.size + 1, np.int64)
-    counts[1 + np.ravel_multi_index(tuple(cells.T), empty.shape)] = sizes
-    shape = (empty.shape[0], empty.shape[1], empty.shape[2])
-    return listed(shape, np.empty((0, 3)), np.cumsum(counts), ids, _columns(found, cells, sizes, ids))
-
-
-def _columns(found: Surfels, cells: NDArray[np.intp], sizes: NDArray[np.int64], ids: NDArray[np.int32]) -> Array:
-    """For each cell its surfels' x, y, z relative to the centre and the normals' parts, each contiguous."""
-    values = np.empty((len(ids), 6))
-    values[:, :3] = (found.cells[ids] - np.repeat(cells, sizes, axis=0)) + found.offset[ids]
-    values[:, 3:] = found.normal[ids]
-    begin = np.repeat(np.cumsum(sizes) - sizes, sizes)
-    place, size = np.arange(len(ids)) - begin, np.repeat(sizes, sizes)
-    columns = np.empty(6 * len(ids))
-    for part in range(6):
-        columns[6 * begin + part * size + place] = values[:, part]
-    return columns
+    begins = np.zeros(shape[0] * shape[1] + 1, np.int64)
+    np.cumsum(np.bincount(row, minlength=len(begins) - 1), out=begins[1:])
+    return order, begins

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core.kernels.cover import keep
+from jaart.core.kernels.cover import in_question, keep
+from jaart.core.memory import ITEM, check, pieces
+from jaart.core.nearest import nearest_others, tree_over
 from jaart.core.pieces import do_each
 from jaart.core.scene import Array, Scene, frozen
 from jaart.core.telling import tell
@@ -22,15 +24,15 @@ GRID = 1 / 8
 DENSITY_K, OUTLIER = 6, 10.0
 #: The proposed h in lengths of a point's own square.
 AUTO_H = 1.2
+#: Points whose neighbours are looked for at a time.
+ASKED = 1 << 14
 #: Share of a ball's radius that must lie in another ball before it is left out.
 CORE = 0.5
-#: Points whose neighbours a thread finds at a time.
-POINTS_AT_ONCE = 1 << 14
 
 
 def bounds(scene: Scene) -> tuple[Array, Array]:
     """Lowest and highest corner (3,) of the box around a cloud's points, in its own coordinates."""
-    return scene.once("bounds", (), lambda: (frozen(_points(scene).min(axis=0)), frozen(_points(scene).max(axis=0))))
+    return scene.once("bounds", (), lambda: _bounds(_points(scene)))
 
 
 def diagonal(scene: Scene) -> float:
@@ -57,51 +59,42 @@ def offset(scene: Scene) -> Array:
 
 def local_points(scene: Scene) -> Array:
     """A cloud's points (N, 3) relative to `offset`: what kernels see. Rays have the same offset subtracted."""
-    return scene.once("local_points", (), lambda: frozen(_points(scene) - offset(scene)))
+    def make() -> Array:
+        points = _points(scene)
+        check(ITEM * len(points), f"a cloud of {len(points)} points")
+        return frozen(points - offset(scene)) if offset(scene).any() else points
+
+    return scene.once("local_points", (), make)
 
 
-def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.intp]]:
+def nearest(scene: Scene, k: int) -> tuple[Array, NDArray[np.int32]]:
     """Distances (N, k) from each point to its k nearest others, rising, and which they are (N, k).
 
     k: at least 1; clipped to N - 1, so a single point has none.
     """
-    def make() -> tuple[Array, NDArray[np.intp]]:
-        return nearest_others(local_points(scene), k, kd_tree(scene))
+    def make() -> tuple[Array, NDArray[np.int32]]:
+        return nearest_others(local_points(scene), k, lambda: kd_tree(scene))
 
     return scene.once("nearest", k, make)
 
 
 def kd_tree(scene: Scene) -> cKDTree:
     """A tree over `local_points` that finds nearest ones."""
-    return scene.once("kd_tree", (), lambda: _tree(local_points(scene)))
+    return scene.once("kd_tree", (), lambda: tree_over(local_points(scene)))
 
 
-def nearest_others(points: Array, k: int, tree: cKDTree | None = None) -> tuple[Array, NDArray[np.intp]]:
-    """Distances (N, k) from each of the points (N, 3) to its k nearest others, and which they are.
-
-    A point that stands in the same place is another one. k is clipped to N - 1. tree: over these points.
-    """
-    k = min(k, len(points) - 1)
-    distance, index = np.empty((len(points), max(k, 0))), np.empty((len(points), max(k, 0)), np.intp)
+def kth_distance(scene: Scene, k: int, some: NDArray[np.int64]) -> Array:
+    """Distance (M,) from some points to the k-th nearest other of each; 0 where there is no other."""
+    k, found, points = min(k, len(_points(scene)) - 1), np.zeros(len(some)), local_points(scene)
     if k < 1:
-        return distance, index
-    tree = tree or _tree(points)
+        return found
+    tree = kd_tree(scene)
 
-    def find(rows: NDArray[np.intp]) -> None:
-        away, which = tree.query(points[rows], k + 1)
-        itself = which == rows[:, None]
-        itself[~itself.any(axis=1), -1] = True  # among more than k in the same place
-        distance[rows], index[rows] = away[~itself].reshape(-1, k), which[~itself].reshape(-1, k)
+    def find(piece: slice) -> None:
+        found[piece] = tree.query(points[some[piece]], [k + 1])[0][:, 0]
 
-    # points of a leaf together, since they read the same parts of the tree
-    do_each(find, [tree.indices[i:i + POINTS_AT_ONCE] for i in range(0, len(points), POINTS_AT_ONCE)], progress=tell)
-    return distance, index
-
-
-def _tree(points: Array) -> cKDTree:
-    from scipy.spatial import cKDTree
-
-    return cKDTree(points)
+    do_each(find, list(pieces(len(some), ASKED)), progress=tell)
+    return found
 
 
 def spacing(scene: Scene) -> float:
@@ -109,12 +102,7 @@ def spacing(scene: Scene) -> float:
 
     0 when there is no point elsewhere.
     """
-    def make() -> float:
-        distance = nearest(scene, DENSITY_K)[0][:, :1]  # the neighbours that balls are made of by default
-        apart = distance[distance > 0]
-        return float(apart.mean()) if len(apart) else 0.0
-
-    return scene.once("spacing", (), make)
+    return _density(scene)[0]
 
 
 def square(scene: Scene) -> float:
@@ -124,15 +112,20 @@ def square(scene: Scene) -> float:
     is the spacing of a regular cloud, but of an irregular or noisy one about twice `spacing`, which pairs of
     close points make small. 0 when there is no other point.
     """
-    def make() -> float:
-        distance = nearest(scene, DENSITY_K)[0]
-        if not distance.shape[1]:
-            return 0.0
-        last, k = distance[:, -1], distance.shape[1]
-        inner = last[last <= OUTLIER * np.median(last)]
-        return float(inner.mean()) * math.sqrt(math.pi / k)
+    return _density(scene)[1]
 
-    return scene.once("square", (), make)
+
+def _density(scene: Scene) -> tuple[float, float]:
+    """`spacing` and `square`, of the neighbours that balls are made of by default."""
+    def make() -> tuple[float, float]:
+        distance = nearest(scene, DENSITY_K)[0]
+        if not (k := distance.shape[1]):
+            return 0.0, 0.0
+        first, last = distance[:, :1], distance[:, -1]
+        apart, inner = first[first > 0], last[last <= OUTLIER * np.median(last)]
+        return (float(apart.mean()) if len(apart) else 0.0), float(inner.mean()) * math.sqrt(math.pi / k)
+
+    return scene.once("density", (), make)
 
 
 def auto_h(scene: Scene) -> float:
@@ -166,12 +159,17 @@ def cover(scene: Scene, ball_k: int) -> NDArray[np.int64]:
     def make() -> NDArray[np.int64]:
         distance, index = nearest(scene, ball_k)
         radii = ball_radii(scene, ball_k)
-        order = _large_first(radii, local_points(scene))
-        place = np.empty(len(order), np.int64)
-        place[order] = np.arange(len(order))
-        kept = np.ones(len(index), dtype=bool)
-        keep(distance[order], place[index[order]], radii[order], CORE, kept)
-        return np.sort(order[kept])
+        asked, kept = np.zeros(len(index), dtype=bool), np.ones(len(index), dtype=bool)
+        in_question(distance, index, radii, CORE, asked)
+        some = np.flatnonzero(asked)
+        order = some[_large_first(radii[some], local_points(scene)[some])]
+        rank = np.empty(len(index), np.int32)
+        rank[order] = np.arange(len(order))
+        keep(distance, index, radii, order, rank, CORE, kept)
+        if ball_k == DENSITY_K:
+            _density(scene)
+        scene.forget("nearest")  # all that is asked of it is known
+        return np.flatnonzero(kept)
 
     return scene.once("cover", ball_k, make)
 
@@ -184,6 +182,12 @@ def _large_first(radii: Array, points: Array) -> NDArray[np.int64]:
     some = order[tied]
     order[tied] = some[np.lexsort((*points[some].T, -radii[some]))]
     return order
+
+
+def _bounds(points: Array) -> tuple[Array, Array]:
+    """Lowest and highest corner (3,), each column alone: rows of three numbers make no vectors."""
+    return (frozen(np.array([points[:, axis].min() for axis in range(3)])),
+            frozen(np.array([points[:, axis].max() for axis in range(3)])))
 
 
 def _points(scene: Scene) -> Array:

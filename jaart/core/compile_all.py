@@ -21,8 +21,9 @@ DONE = "complete"
 #: Settings that between them need every evaluator, search and driver.
 NEEDED: tuple[dict[str, Any], ...] = (
     {}, {"normal": "covariance", "search": "newton"}, {"method": "polynomial", "search": "safe"},
-    {"method": "polynomial", "search": "secant"}, {"method": "projection", "search": "march"},
-    {"method": "off_centre"}, {"search": "centres"}, {"method": "cylinder"}, {"method": "isosurface"},
+    {"method": "polynomial", "search": "secant"}, {"neighbourhood": "cell_knn"},
+    {"method": "projection", "search": "march"}, {"method": "off_centre"}, {"search": "centres"},
+    {"method": "cylinder"}, {"method": "isosurface"},
 )
 
 

@@ -20,7 +20,7 @@ class Made(NamedTuple):
 
 
 def made_by(tracer: Tracer) -> Made:
-    """What a tracer has made so far; a mesh, and lists of nearest surfels, are whole before the first ray."""
+    """What a tracer has made so far; a mesh is whole before the first ray."""
     if isinstance(tracer, MeshTracer):
         return Made()
     kept = places_of(tracer.sites).kept

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core.memory import pieces
 from jaart.core.scene import Array
 
 Index = NDArray[np.integer]
@@ -33,7 +34,11 @@ def gradients(levels: Array, cells: Index, border: str = "open", gradient: str =
 def central(levels: Array, cells: Index, border: str = "open") -> Array:
     """Central differences (N, 3) [T 3.1]. See `gradients` for the arguments."""
     levels, cells = with_outside(levels, cells, border, 1)
-    return np.stack([_slope(levels, list(cells.T), axis) for axis in range(3)], axis=1)
+    result = np.empty((len(cells), 3))
+    for piece in pieces(len(cells)):
+        for axis in range(3):
+            result[piece, axis] = _slope(levels, list(cells[piece].T), axis)
+    return result
 
 
 def youngs(levels: Array, cells: Index, border: str = "open") -> Array:
@@ -44,15 +49,21 @@ def youngs(levels: Array, cells: Index, border: str = "open") -> Array:
     """
     levels, cells = with_outside(levels, cells, border, 2)
     result = np.empty((len(cells), 3))
-    for axis in range(3):
-        index = [cells[:, a, None, None] for a in range(3)]
-        for other, beside in zip({0, 1, 2} - {axis}, (np.array([[-1], [0], [1]]), np.array([[-1, 0, 1]])), strict=True):
-            index[other] = np.clip(index[other] + beside, 0, levels.shape[other] - 1)
-        rows = _slope(levels, index, axis)
-        for _ in range(2):
-            rows = 0.25 * (rows[:, 0] + rows[:, 2]) + 0.5 * rows[:, 1]
-        result[:, axis] = rows
+    for piece in pieces(len(cells)):
+        for axis in range(3):
+            result[piece, axis] = _mean_slope(levels, cells[piece], axis)
     return result
+
+
+def _mean_slope(levels: Array, cells: Index, axis: int) -> Array:
+    """Central differences (N,) along an axis, averaged over the 3×3 rows beside each cell."""
+    index = [cells[:, a, None, None] for a in range(3)]
+    for other, beside in zip({0, 1, 2} - {axis}, (np.array([[-1], [0], [1]]), np.array([[-1, 0, 1]])), strict=True):
+        index[other] = np.clip(index[other] + beside, 0, levels.shape[other] - 1)
+    rows = _slope(levels, index, axis)
+    for _ in range(2):
+        rows = 0.25 * (rows[:, 0] + rows[:, 2]) + 0.5 * rows[:, 1]
+    return rows
 
 
 def smooth(levels: Array, cells: Index, border: str = "open", smoothing: float = 0.8) -> Array:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core.cloud import kd_tree, local_points, nearest_others, offset
+from jaart.core.cloud import kd_tree, local_points, offset
+from jaart.core.nearest import nearest_others
 from jaart.core.scene import Array, Scene, frozen
 from jaart.core.telling import tell
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
-Ints = NDArray[np.intp]
+Ints = NDArray[np.integer]
 Vector = tuple[float, float, float]
 
 #: Neighbours that a normal is estimated from, and along which orientation spreads.
@@ -60,18 +62,18 @@ def normals_of(scene: Scene, orient: str | Vector) -> Oriented:
     """
     def make() -> Oriented:
         local = orient if isinstance(orient, str) else tuple((np.asarray(orient) - offset(scene)).tolist())
-        return oriented(local_points(scene), local, tree=kd_tree(scene))
+        return oriented(local_points(scene), local, tree=lambda: kd_tree(scene))
 
     return scene.once("normals", orient, make)
 
 
 def oriented(points: Array, orient: str | Vector = "spanning_tree", k: int = NEIGHBOURS,
-             tree: cKDTree | None = None) -> Oriented:
+             tree: Callable[[], cKDTree] | None = None) -> Oriented:
     """Normals of bare points (N, 3), estimated from k neighbours each and turned to one side.
 
     orient: "spanning_tree" spreads one side over each part of the surface and takes it for the outer one [Hoppe
-    et al. 1992]; a viewpoint (x, y, z) has each normal turned towards it; "none" leaves them as they come; tree: over
-    the points, made where there is none.
+    et al. 1992]; a viewpoint (x, y, z) has each normal turned towards it; "none" leaves them as they come; tree: makes
+    one over the points, or has it.
     """
     index = nearest_others(points, k, tree)[1]
     normal, gap = estimated(points, index)

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from jaart.core import memory
 from jaart.core.addresses import address_of
 from jaart.core.bricks import brick_slots, bricks_of, slot_numbers
-from jaart.core.errors import SettingsError
 from jaart.core.kernels import blocks, call, cell_gather, near
 from jaart.core.kernels.guess import GUESS_WIDTH
 from jaart.core.kernels.records import FIT_SIZE, Cell, Sites
@@ -27,8 +26,9 @@ from jaart.core.scene import Array
 Ints = NDArray[np.int64]
 T = TypeVar("T")
 
-#: Bytes of a chunk, unless a block is longer.
-CHUNK = 1 << 20
+#: Bytes of the first chunk, unless a block is longer, and how many times as many a later one has: from 4 MiB on the
+#: system may hand out large pages, of which fewer are to be cleared and entered.
+CHUNK, LARGER = 1 << 20, 8
 #: Scratch is for so many surfels, and the heap for so many entries, until a place or a ray needs more.
 SURFELS, HEAP = 256, 4096
 #: Scratch for each surfel that may be near a point: its weight, its place in the local frame, its row of a fit.
@@ -95,12 +95,12 @@ class Places:
 
     def __init__(self, shape: Cell, centres: Array, slots: Ints, gatherer: Any, source: list[int], parts: int,
                  kept: int, alive: tuple[Any, ...], what: str) -> None:
-        self._numbers, self._alive, self._what = np.zeros(blocks.POOL_SIZE, np.int64), alive, what
-        self._chunks: list[Array] = [np.zeros(_EMPTY_WORDS)]
+        self._numbers, self._what, self.alive = np.zeros(blocks.POOL_SIZE, np.int64), what, alive
+        self.chunks: list[Array] = [np.zeros(_EMPTY_WORDS)]
         self._pools: list[Pool] = []
         self._free: list[Pool] = []
         self._lock = Lock()
-        first = {blocks.GATHERER: address_of(gatherer, call.GATHER), blocks.EMPTY: address(self._chunks[0]),
+        first = {blocks.GATHERER: address_of(gatherer, call.GATHER), blocks.EMPTY: address(self.chunks[0]),
                  blocks.ROOM: np.iinfo(np.int64).max, blocks.PARTS: parts, blocks.KEPT: kept}
         for word, value in first.items():
             self._numbers[word] = value
@@ -133,10 +133,10 @@ class Places:
 
     def chunk(self, need: int) -> tuple[int, int]:
         """Address and bytes of one more chunk, which has room for so many. Raises SettingsError where memory ends."""
-        made = np.empty(-(-max(need, CHUNK) // 8))
+        made = np.empty(-(-max(need, CHUNK * min(len(self.chunks), LARGER)) // 8))
         with self._lock:
-            check(sum(one.nbytes for one in (*self._chunks, made)), self._what)
-            self._chunks.append(made)
+            memory.check(sum(one.nbytes for one in (*self.chunks, made)), self._what)
+            self.chunks.append(made)
         return address(made), made.nbytes
 
     def count(self, word: int) -> int:
@@ -146,8 +146,8 @@ class Places:
     @property
     def kept(self) -> Kept:
         """How much is kept so far; exact while no ray is traced."""
-        table = int(self.slots.nbytes) + sum(int(one.nbytes) for one in self._alive)
-        return Kept(self.count(blocks.GATHERED), self.count(blocks.FITTED), len(self._chunks) - 1,
+        table = int(self.slots.nbytes) + sum(int(one.nbytes) for one in self.alive)
+        return Kept(self.count(blocks.GATHERED), self.count(blocks.FITTED), len(self.chunks) - 1,
                     self.count(blocks.BYTES), table)
 
 
@@ -155,13 +155,6 @@ def address(array: NDArray[Any]) -> int:
     """Where an array begins; it must be contiguous."""
     assert array.flags.c_contiguous
     return int(array.ctypes.data)
-
-
-def check(needed: float, what: str) -> None:
-    """Raise SettingsError where something needs more bytes than it may take."""
-    if needed > memory.limit():
-        raise SettingsError(f"{what}: needs {memory.words(needed)} of memory, more than the "
-                            f"{memory.words(memory.limit())} it may take")
 
 
 def places_of(sites: Sites) -> Places:
@@ -229,7 +222,7 @@ def listed(shape: Cell, centres: Array, first: Ints, ids: NDArray[np.int32], col
 def _bricked(shape: Cell, at: Ints, sizes: Ints) -> Ints:
     """Slots of a lattice whose cells' blocks begin at these addresses, cells in C order."""
     some = np.argwhere(sizes.reshape(shape) > 0)
-    slots = brick_slots(shape, bricks_of(shape, some))
+    slots = brick_slots(bricks_of(shape, some))
     everywhere = np.indices(shape).reshape(3, -1).T
     number = slot_numbers(shape, slots, everywhere)
     slots[number[number >= 0]] = at[number >= 0]

@@ -17,7 +17,7 @@ def scene_stages(scene: Scene, settings: Settings, values: Chosen) -> tuple[Stag
     """What is made before the first ray, in its order."""
     surfels = _cloud(scene, settings, values) if scene.kind == "cloud" else _lattice(scene, settings)
     return (*surfels, _table(scene, settings, values), _unasked(scene, values), _distance_field(scene, values),
-            _balls(scene, settings, values), _tree(scene, values), *_mesh(settings, values))
+            _balls(scene, settings, values), _tree(scene), *_mesh(settings, values))
 
 
 def _lattice(scene: Scene, settings: Settings) -> tuple[Stage, ...]:
@@ -51,8 +51,8 @@ def _table(scene: Scene, settings: Settings, values: Chosen) -> Stage:
     if values.method == "cylinder":
         return Stage("cell table", True, "of all surfels that a cylinder in a cell may hold, gathered when a ray first "
                      "asks", ("method", "h"))
-    when = "" if counts_nearest(values.neighbourhood) else ", gathered when a ray first asks"
-    return Stage("cell table", True, f"{_near(settings, values)} of each cell{when}", ("neighbourhood", "radius", "k"))
+    return Stage("cell table", True, f"{_near(settings, values)} of each cell, gathered when a ray first asks",
+                 ("neighbourhood", "radius", "k"))
 
 
 def _balls(scene: Scene, settings: Settings, values: Chosen) -> Stage:
@@ -71,9 +71,7 @@ def _unasked(scene: Scene, values: Chosen) -> Stage:
         return Stage("neighbours not asked for", False, "a ball has none until a ray asks")
     if not evaluates(values):
         return Stage("neighbours not asked for", False, _PICKED, ("method",))
-    return stage("neighbours not asked for", meaning.weighs(values) and counts_nearest(values.neighbourhood),
-                 "the nearest surfels are listed for all cells at once", "a cell has none until a ray asks",
-                 "neighbourhood")
+    return Stage("neighbours not asked for", False, "a cell has none until a ray asks")
 
 
 def _distance_field(scene: Scene, values: Chosen) -> Stage:
@@ -84,12 +82,11 @@ def _distance_field(scene: Scene, values: Chosen) -> Stage:
                  _PICKED, "method")
 
 
-def _tree(scene: Scene, values: Chosen) -> Stage:
-    """What finds balls along a ray, or the nearest surfels of a cell."""
+def _tree(scene: Scene) -> Stage:
+    """What finds balls along a ray."""
     if scene.kind == "cloud":
         return Stage("tree", True, "of the balls, for rays; of the points, where nearest ones are asked for")
-    return stage("tree", meaning.weighs(values) and counts_nearest(values.neighbourhood),
-                 "of the surfels, for those nearest to each cell", "a lattice needs none", "method", "neighbourhood")
+    return Stage("tree", False, "a lattice needs none")
 
 
 def _near(settings: Settings, values: Chosen) -> str:

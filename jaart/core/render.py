@@ -11,7 +11,7 @@ from threading import Event
 
 import numpy as np
 
-from jaart.core import extents, memory, prepare, visible
+from jaart.core import extents, meaning, memory, prepare, visible
 from jaart.core.camera import Camera, check_size
 from jaart.core.counters import Made, made_by, since
 from jaart.core.errors import Cancelled, RayError
@@ -24,7 +24,7 @@ from jaart.core.settings import Settings, preset
 from jaart.core.telling import stoppable
 from jaart.core.tiles import STEPS, TILE, Pixels, columns_for, in_blocks, pixels_at, tile_of, tiles
 from jaart.core.tracers import NO_BEGINS, NO_BLOCKS
-from jaart.core.warm import warm_up
+from jaart.core.warm import warm_choice, warm_up
 
 #: What one ray and its hit take.
 _BYTES_A_RAY = 6 * 8 + 9 * 8 + 7 * 4 + 1
@@ -54,8 +54,7 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
     settings = settings or preset("best")
     job = _camera_job(scene, settings, camera, size) if rays is None else _list_job(rays, any_hit)
     with stoppable(cancel):
-        warm_up(scene, settings)
-        ready = prepare.prepared(scene, visible.seen(scene, settings, job.camera, size), cancel)
+        ready = _ready(scene, settings, job.camera, size, cancel)
     count, begin = threads or os.cpu_count() or 1, time.perf_counter()
     with ThreadPoolExecutor(count) as pool:
         watch = _Watch(progress, cancel, job.count)
@@ -65,6 +64,17 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
         out = columns_for(job.count)
         run.trace(run.job, in_blocks(job.size, 1) if job.size else np.arange(job.count), out)
         return run.hits(run.job, out, job.size)
+
+
+def _ready(scene: Scene, settings: Settings, camera: Camera | None, size: Size, cancel: Event | None) -> Prepared:
+    """All that rays need; its seconds hold what the settings came to, but no compilation."""
+    warm_choice(scene)
+    begin = time.perf_counter()
+    meaning.check(scene, settings)
+    chosen = time.perf_counter() - begin
+    warm_up(scene, settings)
+    ready = prepare.prepared(scene, visible.seen(scene, settings, camera, size), cancel)
+    return replace(ready, seconds=ready.seconds + chosen)
 
 
 @dataclass(frozen=True)

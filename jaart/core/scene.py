@@ -110,6 +110,11 @@ class Scene:
             result: T = kept[1]
             return result
 
+    def forget(self, stage: str) -> None:
+        """Let go of the result of a stage that nothing needs again."""
+        with self._lock:
+            self._kept.pop(stage, None)
+
 
 def _check_levels(scene: Scene) -> None:
     levels = scene.levels

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from jaart.core import placements
 from jaart.core.filters import filtered
 from jaart.core.gradients import gradients
-from jaart.core.lattice import Mask, interface_cells
-from jaart.core.scene import Array, frozen
+from jaart.core.lattice import interface_cells
+from jaart.core.memory import ITEM, check, pieces
+from jaart.core.scene import Array
 from jaart.core.settings import Settings
 
 Vector = tuple[float, float, float]
@@ -70,17 +71,25 @@ def make_surfels(levels: Array, settings: Settings, spacing: Vector = CUBIC) -> 
     cell along x, y, z in units of the longest, which is the cell that the surfels' lengths count in.
     """
     levels = filtered(levels, settings)
-    cells = np.argwhere(interface_cells(levels, settings.neighbours, settings.border))
-    across, defined = _normals(gradients(levels, cells, settings.border, settings.gradient,
-                                               settings.smoothing))
-    cells, across = cells[defined], across[defined]
-    offset = placements.offsets(settings.placement, levels[tuple(cells.T)], across)
-    if tuple(spacing) == CUBIC:
-        index, normal = cells.astype(np.int32), across
-    else:
-        index, offset, normal = _stretched(cells, offset, across, np.array(spacing), settings.placement, levels.shape)
-    index.flags.writeable = False
-    return Surfels(index, frozen(offset), frozen(normal), without_normal=int((~defined).sum()))
+    cells = interface_cells(levels, settings.neighbours, settings.border)
+    check(ITEM * len(cells), f"a surfel in each of {len(cells)} interface cells")
+    slopes = gradients(levels, cells, settings.border, settings.gradient, settings.smoothing)
+    defined = slopes.any(axis=1)
+    found, without = len(cells), int((~defined).sum())
+    if without:
+        cells, slopes = cells[defined], slopes[defined]
+    normal, offset = slopes, np.empty((found - without, 3))  # a normal takes its gradient's place
+    for piece in pieces(len(cells)):
+        across = _normals(slopes[piece])
+        where, normal[piece] = placements.offsets(settings.placement, levels[tuple(cells[piece].T)], across), across
+        if tuple(spacing) == CUBIC:
+            offset[piece] = where
+        else:
+            cells[piece], offset[piece], normal[piece] = _stretched(cells[piece], where, across, np.array(spacing),
+                                                                    settings.placement, levels.shape)
+    for column in (cells, offset, normal):
+        column.flags.writeable = False
+    return Surfels(cells, offset, normal, without_normal=without)
 
 
 def stretched_shape(shape: tuple[int, ...], spacing: Vector) -> tuple[int, int, int]:
@@ -92,7 +101,7 @@ def stretched_shape(shape: tuple[int, ...], spacing: Vector) -> tuple[int, int, 
     return x, y, z
 
 
-def _stretched(cells: NDArray[np.intp], offset: Array, across: Array, spacing: Array, placement: str,
+def _stretched(cells: NDArray[np.int32], offset: Array, across: Array, spacing: Array, placement: str,
                shape: tuple[int, ...]) -> tuple[NDArray[np.int32], Array, Array]:
     """Cell, offset and normal (N, 3) of surfels that were found as if their cells were cubes.
 
@@ -111,11 +120,8 @@ def _stretched(cells: NDArray[np.intp], offset: Array, across: Array, spacing: A
     return index, points - index - 0.5, normal
 
 
-def _normals(gradient: Array) -> tuple[Array, Mask]:
-    """Unit normals (N, 3), and where (N,) they exist. Scaling first keeps tiny gradients from underflow."""
-    largest = np.abs(gradient).max(axis=1)
-    defined = largest > 0
-    scaled = gradient / np.where(defined, largest, 1)[:, None]
-    length = np.sqrt((scaled * scaled).sum(axis=1))
-    return -scaled / np.where(defined, length, 1)[:, None] + 0.0, defined
-
+def _normals(gradient: Array) -> Array:
+    """Unit normals (N, 3) against gradients that are not 0. Scaling first keeps tiny ones from underflow."""
+    scaled = gradient / np.abs(gradient).max(axis=1, keepdims=True)
+    result: Array = -scaled / np.sqrt((scaled * scaled).sum(axis=1, keepdims=True)) + 0.0
+    return result

@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.balls import CloudTracer
+from jaart.core.empty_space import distances
 from jaart.core.kernels import traversal
+from jaart.core.kernels.records import Empty
 from jaart.core.scene import Array, frozen
 
 #: Samples of the energies in each cell that a ray crosses, its borders included; in each ball.
@@ -45,16 +47,16 @@ class Path:
         return whole(np.column_stack((number, places[:, 1:])))
 
 
-def lattice_path(empty: NDArray[np.uint8], o: Array, d: Array) -> Path:
+def lattice_path(empty: Empty, o: Array, d: Array) -> Path:
     """The cells a ray crosses; energies evenly in each, with both sides of each border."""
-    shape = (empty.shape[0], empty.shape[1], empty.shape[2])
-    cells, borders = np.empty((sum(shape) + 3, 3), np.int32), np.empty(sum(shape) + 4)
-    n = traversal.crossed(o, d, shape, cells, borders)
+    size = sum(empty.shape) + 3
+    cells, borders = np.empty((size, 3), np.int32), np.empty(size + 1)
+    n = traversal.crossed(o, d, empty.shape, cells, borders)
     cells, borders = whole(cells[:n]), borders[:n + 1] if n else borders[:0]
     share = np.linspace(0.0, 1.0, SAMPLES_A_CELL)
     ts = (borders[:-1, None] + np.diff(borders)[:, None] * share).ravel() if n else np.empty(0)
     places = np.repeat(cells.astype(np.int64), SAMPLES_A_CELL, axis=0)
-    return Path(cells, frozen(borders), empty[tuple(cells.T)] == 0, frozen(np.empty((0, 4))), ts, places)
+    return Path(cells, frozen(borders), distances(empty, cells) == 0, frozen(np.empty((0, 4))), ts, places)
 
 
 def cloud_path(tracer: CloudTracer, o: Array, d: Array) -> Path:

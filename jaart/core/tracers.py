@@ -14,6 +14,7 @@ from jaart.core.kernels.guess import GUESS_WIDTH
 from jaart.core.kernels.packet import ROOM
 from jaart.core.kernels.pinhole import EDGE, View
 from jaart.core.kernels.records import LOG_WIDTH, Cells, Out, Plan, Sites
+from jaart.core.memory import sparse
 from jaart.core.places import Ints, Pool, address, served
 from jaart.core.scene import Array
 from jaart.core.tiles import Pixels
@@ -98,7 +99,8 @@ class Centres:
 
 def centres_for(sites: Sites) -> Centres:
     """Room for as many as there are cells near a surfel; a page of it costs memory once it is used."""
-    return Centres(np.zeros(len(sites.slots), np.int64), np.zeros((len(sites.slots), GUESS_WIDTH)))
+    what = "polynomials at the cells' centres"
+    return Centres(sparse(sites.slots.shape, what, np.int64), sparse((len(sites.slots), GUESS_WIDTH), what))
 
 
 @dataclass(frozen=True, eq=False)

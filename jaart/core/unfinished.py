@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 #: Temporary files, and whose turn it is to begin or to finish one.
@@ -17,5 +17,6 @@ def none_written() -> Iterator[None]:
     """Remove what is being written; no file is begun or finished in the block. For a process that ends in it."""
     with TURN:
         for part in list(PARTS):
-            part.unlink(missing_ok=True)
+            with suppress(OSError):  # some systems keep a file that is open
+                part.unlink(missing_ok=True)
         yield

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import threading
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,12 +16,13 @@ from jaart.core import assemble, cylinder, meaning, mesh_tracer
 from jaart.core.addresses import compiled
 from jaart.core.balls import CloudTracer
 from jaart.core.cell_table import cell_table
-from jaart.core.chosen import Chosen, chosen
+from jaart.core.chosen import Chosen, chosen, counts_nearest
 from jaart.core.cloud_surfels import cloud_of
 from jaart.core.errors import SettingsError
 from jaart.core.groups.surface import MESHES
 from jaart.core.kernels import ball_ray, beams, energies, pinhole, ray, traversal
 from jaart.core.kernels.records import LOG_WIDTH, Cells, Plan
+from jaart.core.nearest import LEAST, nearest_others
 from jaart.core.parameter import Length
 from jaart.core.places import neighbours_of, served
 from jaart.core.scene import Scene
@@ -54,9 +56,12 @@ def warm_up(scene: Scene, settings: Settings, tracing: bool = False) -> Chosen:
     tracing: also those that follow a single ray. Returns what the settings come to. Raises SettingsError for
     settings that make no sense in the scene.
     """
+    warm_choice(scene)
     values = meaning.check(scene, settings)
     with _LOCK, told(None):
         _camera()
+        if scene.kind != "cloud" and counts_nearest(values.neighbourhood):
+            _nearest_cells()
         (_cloud if scene.kind == "cloud" else _lattice)()
         if tracing:
             _tracing()
@@ -66,6 +71,28 @@ def warm_up(scene: Scene, settings: Settings, tracing: bool = False) -> Chosen:
         if values.method == "cylinder":
             cylinder.warm_up()
     return values
+
+
+def warm_choice(scene: Scene) -> None:
+    """Run what the lengths of a cloud's settings are chosen by."""
+    if scene.kind == "cloud":
+        with _LOCK, told(None):
+            _nearest_points()
+
+
+@functools.cache
+def _nearest_points() -> None:
+    """The neighbours of an even cloud; a smaller one is not put into a grid."""
+    x, y = np.divmod(np.arange(LEAST), 32.0)
+    nearest_others(np.column_stack((x, y, 0.01 * x * y)), 2)
+
+
+@functools.cache
+def _nearest_cells() -> None:
+    """The surfels nearest to a cell."""
+    found = Surfels(np.array([[1, 1, 1]], np.int32), np.zeros((1, 3)), np.eye(3)[[2]])
+    values = replace(chosen(Scene("small", levels=np.zeros((3, 3, 3))), Settings()), neighbourhood="cell_knn")
+    neighbours_of(cell_table(found, (3, 3, 3), values, 1).sites, (1, 1, 1))
 
 
 @functools.cache

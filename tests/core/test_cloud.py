@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from jaart.core import cloud
 from jaart.core.io import load
+from jaart.core.nearest import nearest_others
 from jaart.core.samples import bumpy_sphere, fibonacci, standard_bumps
 from jaart.core.scene import Scene
 
@@ -70,7 +71,7 @@ def test_nearest_others_as_all_distances_have_it() -> None:
 def test_points_in_the_same_place_are_others() -> None:
     points = np.zeros((9, 3))
     points[8] = 1
-    distance, index = cloud.nearest_others(points, 3)
+    distance, index = nearest_others(points, 3)
     assert (index != np.arange(9)[:, None]).all()
     assert not distance[:8].any() and np.allclose(distance[8], math.sqrt(3))
 

@@ -10,7 +10,7 @@ import pytest
 
 from jaart.core.assemble import WEIGHTS
 from jaart.core.kernels.select import kth_smallest
-from jaart.core.kernels.weigh import nearest_distance, slope_factor
+from jaart.core.kernels.weigh import any_within, slope_factor
 from tests.core.kernel_calls import near_of, place, rule_of, weights_of
 from tests.oracle import neighbourhoods, weights
 from tests.oracle.samples import cloudlet
@@ -101,7 +101,7 @@ def test_an_empty_reach_has_no_weight(name: str) -> None:
 @pytest.mark.parametrize("name", WEIGHTS)
 def test_no_surfel_at_all_has_no_weight(name: str) -> None:
     assert weights_of(near_of([]), [0.1, 0.2, 0.3], rule_of(name, h=H, k=3))[1] == 0
-    assert nearest_distance(near_of([]), (0.0, 0.0, 0.0)) == math.inf
+    assert not any_within(near_of([]), (0.0, 0.0, 0.0), 1e300)
 
 
 @pytest.mark.parametrize("name", WEIGHTS)
@@ -153,7 +153,8 @@ def test_kth_smallest_is_that_of_sorted_numbers() -> None:
         assert (a[:n] == 9.0).all() and sorted(a[n:]) == sorted(numbers)
 
 
-def test_the_nearest_distance_is_exact() -> None:
+def test_whether_a_surfel_is_within_a_distance() -> None:
     for x in NEAR:
-        assert nearest_distance(near_of(POINTS), place(x)) == pytest.approx(min(math.dist(x, p) for p in POINTS),
-                                                                            abs=1e-15)
+        distance = min(math.dist(x, p) for p in POINTS)
+        assert any_within(near_of(POINTS), place(x), distance * (1 + 1e-14))
+        assert distance == 0 or not any_within(near_of(POINTS), place(x), distance * (1 - 1e-14))

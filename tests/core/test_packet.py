@@ -7,6 +7,7 @@ import pytest
 
 from jaart.core import prepare
 from jaart.core.camera import Camera
+from jaart.core.empty_space import distances
 from jaart.core.kernels import records
 from jaart.core.kernels.packet import LANES
 from jaart.core.records import Hits
@@ -64,7 +65,7 @@ def test_no_ray_of_a_block_has_a_surfel_near_before_it_begins() -> None:
             t = share * np.minimum(begins, np.linalg.norm(origins - 12.0, axis=1) + 30.0)
             cell = np.floor(origins + t[:, None] * directions).astype(int)
             inside = ((cell >= 0) & (cell < empty.shape)).all(axis=1)
-            assert (empty[tuple(cell[inside].T)] > 1).all()
+            assert (distances(empty, cell[inside]) > 1).all()
 
 
 def test_blocks_spare_cells() -> None:

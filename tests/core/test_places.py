@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import numpy as np
 import pytest
@@ -143,3 +144,20 @@ def test_rays_that_ask_for_more_than_there_is_are_told(name: str, monkeypatch: p
     monkeypatch.setattr(memory, "limit", lambda: 300 << 10)
     with pytest.raises(SettingsError, match=r"needs 1.* MiB of memory, more than the"):
         render(scene, settings, size=SIZE)
+
+
+@pytest.mark.parametrize(("name", "given", "least", "said"), [
+    ("lattice plane", {}, 100_000, "a surfel in each of .* interface cells: needs"),
+    ("lattice plane", {"radius": 9.0}, 1 << 22, "radius = 9.* cells: needs"),
+    ("lattice plane", {"neighbourhood": "cell_knn", "k": 300}, 1 << 22, "k = 300: needs"),
+    ("lattice plane", {"neighbourhood": "knn", "k": 300}, 1 << 22, "k = 300: needs"),
+    ("cloud plane", {}, 500_000, "a cloud of 2000 points: needs"),
+    ("cloud plane", {"radius": "0.5d"}, 1 << 22, "radius = .*: needs"),
+    ("cloud plane", {"neighbourhood": "knn", "k": 500}, 1 << 22, "k = 500: needs"),
+    ("cloud cylinder", {"h": "0.3d"}, 1 << 22, "h = .*: needs")])
+def test_what_would_not_fit_says_so_before_it_starts(name: str, given: dict[str, Any], least: int, said: str,
+                                                     monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, settings = case(name)
+    monkeypatch.setattr(memory, "limit", lambda: least)
+    with pytest.raises(SettingsError, match=said + ".* of memory, more than the"):
+        prepare.prepared(scene, settings.replace(**given))

@@ -7,8 +7,8 @@ promise that comes up is the first hit, up to what two sheets closer than a quar
 
 from __future__ import annotations
 
-from math import inf, nan, sqrt
-from typing import Any, NamedTuple
+from math import inf, nan
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,102 +16,50 @@ from numpy.typing import NDArray
 from jaart.core.kernels import records as r
 from jaart.core.kernels.address import floats_at, load
 from jaart.core.kernels.blocks import FITTED, GATHERER, HEAP, KEPT, MORE, is_short, kept_in, publish, take_back
+from jaart.core.kernels.bundle import (
+    ALONE,
+    MOST,
+    Cone,
+    Listed,
+    Room,
+    cone_about,
+    horizon,
+    last_of,
+    list_more,
+    next_size,
+    nothing_listed,
+    push_pierced,
+    unowned_room,
+)
 from jaart.core.kernels.call import evaluate_at, gather_at, search_from
 from jaart.core.kernels.counts import forget_counts, write_counts
 from jaart.core.kernels.guess import GUESS_WIDTH, STATE, is_near, meets, show_centre, write_guess
-from jaart.core.kernels.heap import pop, push
+from jaart.core.kernels.heap import push
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.leaving import Leave, counting, leave
 from jaart.core.kernels.log import end_log
 from jaart.core.kernels.near import near_in, surfels_near
 from jaart.core.kernels.packet import is_bad
-from jaart.core.kernels.ray import added, no_hit, visiting, write_end
+from jaart.core.kernels.pierce import NOTHING, ROOM, Balls, chord, next_item, push_root, unowned_balls
+from jaart.core.kernels.ray import added, no_hit, ray_of, visiting, write_end
 from jaart.core.kernels.records import Array, Out, Plan, RayEnd, Sites, Start, Vector
 from jaart.core.kernels.stretch import has_hit
-from jaart.core.kernels.tree import Tree, span
-from jaart.core.kernels.unowned import unowned, unowned_sites
+from jaart.core.kernels.tree import Tree
+from jaart.core.kernels.unowned import unowned
 from jaart.core.kernels.vectors import along, dot
 
 Ints = NDArray[np.int64]
 #: Promises closer to a hit than this, in h, are of the same sheet.
 _SAME_SHEET = 0.25
-#: Nothing is left in the heap that counts, or it has no room.
-NOTHING, ROOM = -1, -2
-
-
+#: What a ray lacks for which more balls are to be listed.
+MORE_BALLS, NO_MORE = 0, -1
 _ZERO: Any = np.int64(0)
 _NOT_ASKED: Any = np.int64(-1)
 #: Farther than this from what is kept at a ball's centre, in h, no origin is on the surface.
 _BESIDE = 0.4
-#: A node adds fewer entries than this to the heap.
-_LEAF_ROOM = 64
 
 
-class Balls(NamedTuple):
-    """A cloud as rays pierce it.
-
-    sites: the balls; radii: (N,); tree: over the balls; stretches: 1 where a ball is searched from side to side, 0
-    where a search starts from its promise, which what is kept at its centre makes; any_hit: 1 where the first found
-    will do; blur: rounding of the frame's origin.
-    """
-
-    sites: Sites
-    radii: Array
-    tree: Tree
-    stretches: int
-    any_hit: int
-    blur: float
-
-
-@kernel(STRICT)
-def chord(balls: Balls, ball: int, o: Vector, d: Vector) -> tuple[float, float, float]:
-    """Distance t of the ray's foot point on a ball's centre, half the chord (NaN for none), and priority [A 12].
-
-    γ = (ρ - distance of ray and centre)/ρ.
-    """
-    c = (balls.sites.centres[ball, 0] - o[0], balls.sites.centres[ball, 1] - o[1], balls.sites.centres[ball, 2] - o[2])
-    foot, radius = dot(c, d), balls.radii[ball]
-    aside = along(c, d, -foot)
-    distance = sqrt(dot(aside, aside))
-    half = sqrt((radius - distance) * (radius + distance)) if distance <= radius else nan
-    return foot, half, (radius - distance) / radius if radius > 0.0 else 0.0
-
-
-@kernel(STRICT)
-def push_children(balls: Balls, node: int, o: Vector, d: Vector, inverse: Vector, keys: Array, items: Ints,
-                  size: int) -> int:
-    """Add what a node holds and the ray meets: its two children, or its balls; returns the heap's size."""
-    tree = balls.tree
-    if tree.size[node] == 0:
-        for i in range(2):
-            child = node + 1 if i == 0 else tree.first[node]
-            enter, leave = span(tree.low, tree.high, child, o, inverse)
-            if enter <= leave and leave > 0.0:
-                size = push(keys, items, size, -2.0 if balls.any_hit == 1 else max(enter, 0.0), -1 - child)
-        return size
-    for at in range(tree.first[node], tree.first[node] + tree.size[node]):
-        ball = tree.order[at]
-        foot, half, priority = chord(balls, ball, o, d)
-        if foot + half > 0.0:
-            size = push(keys, items, size, -priority if balls.any_hit == 1 else max(foot - half, 0.0), ball)
-    return size
-
-
-@kernel(STRICT)
-def next_item(balls: Balls, o: Vector, d: Vector, inverse: Vector, limit: float, keys: Array, items: Ints,
-              size: int) -> tuple[int, int]:
-    """The heap's size, and the nearest ball or promise before a limit; NOTHING for none, ROOM for a full heap."""
-    while size > 0 and keys[0] < limit:
-        if size > keys.shape[0] - _LEAF_ROOM:
-            return size, ROOM
-        size = pop(keys, items, size)
-        if items[size] >= 0:
-            return size, items[size]
-        size = push_children(balls, -1 - items[size], o, d, inverse, keys, items, size)
-    return size, NOTHING
-
-
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def guess_at(sites: Sites, ball: int) -> int:
     """Address of what is kept at the centre of a ball that was made ready."""
     return kept_in(load(sites.slots, ball))
@@ -119,10 +67,8 @@ def guess_at(sites: Sites, ball: int) -> int:
 
 @kernel(STRICT)
 def make_ready(sites: Sites, plan: Plan, ball: int, work: Array, fit: Array) -> bool:
-    """Gather a ball's surfels and keep the surface at its centre, where nobody did; whether there was room for it."""
+    """Gather a ball's surfels and keep the surface at its centre; whether there was room for it."""
     pool, place = sites.pool, (ball, _ZERO, _ZERO)
-    if load(sites.slots, ball) != 0:
-        return True
     address = gather_at(pool[GATHERER], pool, place)
     if address == 0:
         return False
@@ -140,7 +86,7 @@ def make_ready(sites: Sites, plan: Plan, ball: int, work: Array, fit: Array) -> 
     return True
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, begin: Leave, number: int) -> Start:
     """Where the search of a ball begins: at its promise, NaN for none, or at its near side for a stretch.
 
@@ -160,7 +106,7 @@ def start_in(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, begin: L
     return Start((ball, _ZERO, _ZERO), base, foot, s, low, high, nan, number)
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def may_be_left(balls: Balls, ball: int, o: Vector, h: float) -> bool:
     """Whether the ray's origin, which a ball must hold, may be on the surface: what is kept of it is not far."""
     x = (o[0] - balls.sites.centres[ball, 0], o[1] - balls.sites.centres[ball, 1], o[2] - balls.sites.centres[ball, 2])
@@ -177,7 +123,7 @@ def leaving(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, work: Arr
     return leave(surfels_near(balls.sites, (ball, _ZERO, _ZERO)), x, o, d, plan, balls.blur, work, fit)
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def in_units(tree: Tree, o: Vector, h: float) -> Vector:
     """An origin in units of the cloud's longest edge or of h, whichever is longer."""
     unit = h
@@ -186,12 +132,14 @@ def in_units(tree: Tree, o: Vector, h: float) -> Vector:
     return o[0] / unit, o[1] / unit, o[2] / unit
 
 
-@kernel(STRICT)
-def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, work: Array, fit: Array, keys: Array,
-                   items: Ints) -> RayEnd:
-    """The first hit of a ray, or how its last start ended; it ends at once where the pool is short of room.
+@kernel(STRICT, inline=True)
+def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, room: Room, listed: Listed, rows: Array,
+                   work: Array, fit: Array, keys: Array, items: Ints) -> RayEnd:
+    """The first hit of a ray, or how its last start ended; it ends at once where the pool is short of room, or more
+    balls are to be listed.
 
-    o, d: origin and unit direction in the cloud's local frame; keys, items: room for the heap.
+    o, d: origin and unit direction in the cloud's local frame; room, listed: the balls of its bundle; keys, items: room
+    for the heap.
     """
     if is_bad(in_units(balls.tree, o, plan.rule.h), d):
         return no_hit(r.BAD_RAY)
@@ -200,17 +148,20 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
     end, best, visited, number = no_hit(r.BACKGROUND), no_hit(r.BACKGROUND), 0, 0
     found, limit, first, slack = False, inf, inf, _SAME_SHEET * plan.rule.h
     begin = Leave(0.0, _NOT_ASKED, nan)
-    enter, last = span(balls.tree.low, balls.tree.high, 0, o, inverse)
-    size = push(keys, items, 0, -2.0, -1) if enter <= last and last > 0.0 else 0
+    size = (push_root(balls, o, inverse, keys, items) if listed.balls == ALONE
+            else push_pierced(balls, room, listed, o, d, keys, items))
+    known = horizon(room, listed)
     while True:
-        size, item = next_item(balls, o, d, inverse, limit, keys, items, size)
+        size, item = next_item(balls, o, d, inverse, min(limit, known), keys, items, size)
+        if item == NOTHING and known < limit:
+            return unfinished(end)
         if item == NOTHING:
             break
         ball = item if item < count else item - count
         if item == ROOM:
             balls.sites.pool[HEAP] = 1
             return end
-        if not make_ready(balls.sites, plan, ball, work, fit):
+        if load(balls.sites.slots, ball) == 0 and not make_ready(balls.sites, plan, ball, work, fit):
             return end
         guess = floats_at(guess_at(balls.sites, ball), GUESS_WIDTH)
         if begin.used < 0 and begin.t == 0.0 and may_be_left(balls, ball, o, plan.rule.h):
@@ -240,7 +191,7 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, rows: Array, 
     return visiting(end, visited) if not found else finished(best, end, visited)
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def unpromising(end: RayEnd, kept: int) -> RayEnd:
     """A ray's end after a ball that promises no hit: it is said where that has no normal. kept: the state at its
     centre.
@@ -250,34 +201,60 @@ def unpromising(end: RayEnd, kept: int) -> RayEnd:
                   end.cells, end.lowered, end.gap, end.rows, end.missing)
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
+def unfinished(end: RayEnd) -> RayEnd:
+    """The end of a ray for which more balls are to be listed."""
+    return RayEnd(end.state, end.t, end.point, end.n, end.energy, end.off, end.iterations, end.evaluations, end.used,
+                  end.cells, end.lowered, end.gap, end.rows, MORE_BALLS)
+
+
+@kernel(STRICT, inline=True)
 def finished(best: RayEnd, last: RayEnd, visited: int) -> RayEnd:
     """The best hit with the work that all starts took."""
     return RayEnd(best.state, best.t, best.point, best.n, best.energy, best.off, best.iterations, last.evaluations,
-                  last.used, visited, last.lowered, best.gap, last.rows, NOTHING)
+                  last.used, visited, last.lowered, best.gap, last.rows, NO_MORE)
+
+
+@kernel(STRICT, inline=True)
+def trace_listed(balls: Balls, plan: Plan, o: Vector, d: Vector, cone: Cone, room: Room, listed: Listed, rows: Array,
+                 work: Array, fit: Array, keys: Array, items: Ints) -> tuple[RayEnd, Listed]:
+    """A ray's end, and what its bundle has listed then."""
+    while True:
+        end = trace_ball_ray(balls, plan, o, d, room, listed, rows, work, fit, keys, items)
+        if end.missing != MORE_BALLS:
+            return end, listed
+        forget_counts(fit)
+        listed = list_more(balls, cone, room, listed)
 
 
 @kernel(STRICT, entry=True)
-def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array, pixels: Ints, out: Out, rows: Array,
-                    work: Array, fit: Array, keys: Array, items: Ints) -> tuple[int, int]:
-    """Trace some of the rays and write each into its row of the columns; returns how many of them, before one for which
+def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array, pixels: Ints, begin: int, out: Out,
+                    rows: Array, room: Room, work: Array, fit: Array, keys: Array, items: Ints) -> tuple[int, int]:
+    """Trace rays and write each into its row of the columns; returns how many are done, those before one for which
     the pool was short, and the rows of the log.
 
-    origins, directions: (R, 3) in the local frame; pixels: rows to trace; the others as of `trace_ball_ray`.
+    origins, directions: (R, 3) in the cloud's own coordinates; pixels: rows to trace, from begin on; the others as of
+    `trace_ball_ray`.
     """
-    log, tree = unowned(rows), balls.tree
-    tree = Tree(unowned(tree.low), unowned(tree.high), unowned(tree.first), unowned(tree.size), unowned(tree.order))
-    balls = Balls(unowned_sites(balls.sites), unowned(balls.radii), tree, balls.stretches, balls.any_hit, balls.blur)
-    scratch, fitted, waiting, numbers, written = unowned(work), unowned(fit), unowned(keys), unowned(items), 0
-    for i in range(pixels.shape[0]):
-        to = pixels[i]
-        o = (origins[to, 0], origins[to, 1], origins[to, 2])
-        d = (directions[to, 0], directions[to, 1], directions[to, 2])
-        end = trace_ball_ray(balls, plan, o, d, log, scratch, fitted, waiting, numbers)
-        if is_short(balls.sites.pool):
-            forget_counts(fitted)
-            return i, 0
-        write_end(out, to, end)
-        write_counts(out, to, fitted)
-        written = end.rows
-    return pixels.shape[0], written
+    balls, room, log, scratch = unowned_balls(balls), unowned_room(room), unowned(rows), unowned(work)
+    fitted, waiting, entries, rays = unowned(fit), unowned(keys), unowned(items), unowned(pixels)
+    at, size, written = begin, MOST, 0
+    while at < rays.shape[0]:
+        last = last_of(size, at, rays.shape[0])
+        cone = cone_about(origins, directions, rays[at:last], balls.offset)
+        listed = nothing_listed(balls, cone, min(size, last - at), room, waiting)
+        for i in range(at, last):
+            to = rays[i]
+            o, d = ray_of(origins, directions, to)
+            end, listed = trace_listed(balls, plan, along(o, balls.offset, -1.0), d, cone, room, listed, log, scratch,
+                                       fitted, waiting, entries)
+            if is_short(balls.sites.pool):
+                forget_counts(fitted)
+                return i, 0
+            write_end(out, to, end)
+            for axis in range(3):
+                out.point[to, axis] += balls.offset[axis]
+            write_counts(out, to, fitted)
+            written = end.rows
+        at, size = last, next_size(size, listed.balls)
+    return rays.shape[0], written

@@ -8,12 +8,10 @@ from __future__ import annotations
 
 from math import floor, inf
 
-import numpy as np
-from numpy.typing import NDArray
-
+from jaart.core.kernels.empty_space import away
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.pinhole import EDGE, View, ray_at
-from jaart.core.kernels.records import Array, Vector
+from jaart.core.kernels.records import Array, Empty, Vector
 from jaart.core.kernels.vectors import along, length
 
 #: A shorter step than this, in cells, leads to what is near; no block takes more steps.
@@ -23,12 +21,12 @@ _SLACK, _SHARE = 1e-6, 1e-12
 
 
 @kernel(STRICT)
-def free_around(empty: NDArray[np.uint8], p: Vector, near: int) -> float:
+def free_around(empty: Empty, p: Vector, near: int) -> float:
     """How far from a point, along each axis, no cell is within `near` cells of one with a surfel."""
     nx, ny, nz = empty.shape
     outside = max(max(max(-p[0], p[0] - nx), max(-p[1], p[1] - ny)), max(-p[2], p[2] - nz))
     cell = (_index(p[0], empty.shape[0]), _index(p[1], empty.shape[1]), _index(p[2], empty.shape[2]))
-    return max(outside, float(int(empty[cell]) - near - 1))
+    return max(outside, float(away(empty, cell) - near - 1))
 
 
 @kernel(STRICT)
@@ -53,7 +51,7 @@ def width_of(view: View, x: Vector, y: Vector) -> tuple[float, float]:
 
 
 @kernel(STRICT)
-def empty_until(view: View, empty: NDArray[np.uint8], near: int, x: Vector, y: Vector) -> float:
+def empty_until(view: View, empty: Empty, near: int, x: Vector, y: Vector) -> float:
     """The t before which no ray of a block is within `near` cells of a cell with a surfel; inf: none ever is."""
     (o, d), (a, b) = ray_at(view, x[1], y[1]), width_of(view, x, y)
     nx, ny, nz = empty.shape
@@ -78,7 +76,7 @@ def _places(block: int, size: int) -> Vector:
 
 
 @kernel(STRICT, entry=True)
-def write_blocks(view: View, empty: NDArray[np.uint8], near: int, begin: int, end: int, blocks: Array) -> None:
+def write_blocks(view: View, empty: Empty, near: int, begin: int, end: int, blocks: Array) -> None:
     """Write `empty_until` of the rows begin … end of blocks (blocks down, blocks across)."""
     for j in range(begin, end):
         for i in range(blocks.shape[1]):

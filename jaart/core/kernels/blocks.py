@@ -28,7 +28,7 @@ from jaart.core.kernels.records import Array, Numbers
 POOL_SIZE = SOURCE + 12
 _WORD = 8
 #: A column is as long as a multiple of this, and what fills it up is so far from every centre.
-VECTOR, NOWHERE = 8, 1e100
+VECTOR, NOWHERE = 8, 1e120
 
 
 @kernel(STRICT)

@@ -1,4 +1,4 @@
-"""The surfels near a cell of a lattice: those within a radius of its centre [T §3.1.3]."""
+"""The surfels near a cell of a lattice: those within a radius of its centre, or the nearest to it [T §3.1.3]."""
 
 from __future__ import annotations
 
@@ -10,9 +10,12 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.records import Array, Cell, Numbers
 
 #: What a pool knows: cells along x and y; how many surfels; addresses of where each row of cells along z begins in
-#: the order of the cells, that order, the surfels' cells, offsets and normals; how many cells away a surfel may be;
-#: address of the radius and of the largest part of an offset.
-(NX, NY, COUNT, ROWS, ORDER, CELLS, OFFSETS, NORMALS, WIDE, LENGTHS) = range(SOURCE, SOURCE + 10)
+#: the order of the cells, that order, the surfels' cells, offsets and normals, and of the radius with the largest part
+#: of an offset and how much farther than the nearest others may be; how many of the nearest are wanted; how far, in
+#: cells, a cell that has any may be from one with a surfel.
+(NX, NY, COUNT, ROWS, ORDER, CELLS, OFFSETS, NORMALS, LENGTHS, WANTED, HALO) = range(SOURCE, SOURCE + 11)
+#: Cells along an axis from which on all are looked through.
+_WIDEST = 1e9
 
 
 @kernel(STRICT)
@@ -40,11 +43,12 @@ def sort(ids: Any, size: int) -> None:
 
 
 @kernel(STRICT)
-def find(pool: Numbers, cell: Cell, ids: Any) -> int:
-    """Write down the surfels near a cell, as many as there is room for; returns how many there are."""
+def find(pool: Numbers, cell: Cell, radius: float, ids: Any) -> int:
+    """Write down the surfels within a radius of a cell's centre, as many as there is room for; returns how many."""
     order, cells = ids_at(pool[ORDER], pool[COUNT]), ids_at(pool[CELLS], 3 * pool[COUNT])
     rows, offsets = wholes_at(pool[ROWS], pool[NX] * pool[NY] + 1), points_at(pool[OFFSETS], pool[COUNT])
-    wide, radius, most, found = pool[WIDE], floats_at(pool[LENGTHS], 2)[0], floats_at(pool[LENGTHS], 2)[1], 0
+    most, found = floats_at(pool[LENGTHS], 3)[1], 0
+    wide = int(min(radius + most, _WIDEST))
     for i in range(max(cell[0] - wide, 0), min(cell[0] + wide + 1, pool[NX])):
         for j in range(max(cell[1] - wide, 0), min(cell[1] + wide + 1, pool[NY])):
             across, along = max(abs(i - cell[0]) - most, 0.0), max(abs(j - cell[1]) - most, 0.0)
@@ -79,9 +83,8 @@ def write_columns(pool: Numbers, cell: Cell, ids: Any, size: int, columns: Array
 
 
 @kernel(STRICT)
-def gather_cell(pool: Numbers, cell: Cell) -> int:
-    """Gather the surfels near a cell, their ids rising; returns the block's address, 0 where there is no room."""
-    size = find(pool, cell, ids_at(ids_in(pool, pool[AT]), free_ids(pool)))
+def block_with(pool: Numbers, cell: Cell, size: int) -> int:
+    """The block of a cell whose so many surfels' ids were written down where the next block's begin."""
     address = lay(pool, size)
     if address == 0 or size == 0:
         return address
@@ -89,3 +92,10 @@ def gather_cell(pool: Numbers, cell: Cell) -> int:
     sort(ids, size)
     write_columns(pool, cell, ids, size, floats_at(columns_in(pool, address, size), 6 * wide_of(size)))
     return address
+
+
+@kernel(STRICT)
+def gather_cell(pool: Numbers, cell: Cell) -> int:
+    """Gather the surfels near a cell, their ids rising; returns the block's address, 0 where there is no room."""
+    radius = floats_at(pool[LENGTHS], 3)[0]
+    return block_with(pool, cell, find(pool, cell, radius, ids_at(ids_in(pool, pool[AT]), free_ids(pool))))

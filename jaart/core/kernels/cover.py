@@ -9,18 +9,32 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.records import Array
 
 Ints = NDArray[np.int64]
+Rows = NDArray[np.int32]
 
 
 @kernel(STRICT, entry=True)
-def keep(distance: Array, index: Ints, radii: Array, share: float, kept: NDArray[np.bool_]) -> None:
+def in_question(distance: Array, index: Rows, radii: Array, share: float, asked: NDArray[np.bool_]) -> None:
+    """Mark the balls of which one holds the core of the other; the arguments, but for asked, as of `keep`."""
+    for i in range(index.shape[0]):
+        for at in range(index.shape[1]):
+            j = index[i, at]
+            if distance[i, at] + share * radii[j] <= radii[i]:
+                asked[i] = asked[j] = True
+
+
+@kernel(STRICT, entry=True)
+def keep(distance: Array, index: Rows, radii: Array, order: Ints, rank: Rows, share: float,
+         kept: NDArray[np.bool_]) -> None:
     """Mark the balls that are kept: one that is kept drops later ones whose core it holds.
 
     A core is the ball of `share` times the radius. distance, index: (N, k) nearest other centres of each ball,
-    rising; radii (N,), at most the distance to the last of them; kept (N,): all true.
+    rising; radii (N,), at most the distance to the last of them; order: balls in question, the first first; rank (N,):
+    where in it each of them stands; kept (N,): all true.
     """
-    for i in range(index.shape[0]):
+    for turn in range(order.shape[0]):
+        i = order[turn]
         if kept[i]:
             for at in range(index.shape[1]):
                 j = index[i, at]
-                if j > i and distance[i, at] + share * radii[j] <= radii[i]:
+                if distance[i, at] + share * radii[j] <= radii[i] and rank[j] > turn:
                     kept[j] = False

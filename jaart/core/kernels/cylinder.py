@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.blocks import is_short
+from jaart.core.kernels.empty_space import away
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import normal, point, surfels_near
 from jaart.core.kernels.packet import is_bad
@@ -149,7 +150,7 @@ def cylinder_ray(cells: Cells, radius: float, o: Vector, d: Vector, rows: Array)
     cell = cell_at(axes, t) if t <= leave else (-1, -1, -1)
     while inside(cell, shape):
         visited += 1
-        free = int(cells.empty[cell]) - cells.halo
+        free = away(cells.empty, cell) - cells.halo
         t_next, ahead = advance(axes, cell, max(free - 1, 0))
         near = surfels_near(cells.sites, cell)
         if near.size > 0:

@@ -38,15 +38,13 @@ class Grid(NamedTuple):
 
 @kernel(STRICT)
 def first_at_least(keys: Ints, key: int) -> int:
-    """Where the first number that is not below a key stands in rising numbers."""
-    low, high = 0, keys.shape[0]
-    while low < high:
-        middle = (low + high) // 2
-        if keys[middle] < key:
-            low = middle + 1
-        else:
-            high = middle
-    return low
+    """Where the first number that is not below a key stands in rising numbers: halved without a branch."""
+    at, left = 0, keys.shape[0]
+    while left > 1:
+        half = left // 2
+        at += half if keys[at + half - 1] < key else 0
+        left -= half
+    return at + 1 if left == 1 and keys[at] < key else at
 
 
 @kernel(STRICT)
@@ -88,15 +86,26 @@ def grid_of(pool: Ints) -> Grid:
                 points_at(pool[NORMALS], count), ids_at(pool[IDS], count))
 
 
+@kernel(STRICT, inline=True)
+def is_within(grid: Grid, at: int, centre: Vector, square: float) -> bool:
+    """Whether a point lies no farther from a centre than the root of a square."""
+    x, y, z = grid.points[at, 0] - centre[0], grid.points[at, 1] - centre[1], grid.points[at, 2] - centre[2]
+    return x * x + y * y + z * z <= square
+
+
 @kernel(STRICT)
 def find(grid: Grid, centre: Vector, radius: float, ids: Any) -> int:
     """Write down where in the grid the points within a ball stand, as many as there is room for; returns how many."""
     found, (low, high, rows) = 0, cells_of(grid, centre, radius)
     for row in range(rows):
         begin, end = run(grid, low, high, rows, row)
+        if found + end - begin <= ids.shape[0]:
+            for at in range(begin, end):  # without a branch, which nobody could foresee
+                ids[found] = at
+                found += 1 if is_within(grid, at, centre, radius * radius) else 0
+            continue
         for at in range(begin, end):
-            x, y, z = grid.points[at, 0] - centre[0], grid.points[at, 1] - centre[1], grid.points[at, 2] - centre[2]
-            if x * x + y * y + z * z <= radius * radius:
+            if is_within(grid, at, centre, radius * radius):
                 if found < ids.shape[0]:
                     ids[found] = at
                 found += 1

@@ -9,7 +9,7 @@ from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.normals import sampling_gap
 from jaart.core.kernels.records import Array, Bounds, Near, Value, Vector
 from jaart.core.kernels.vectors import dot, length
-from jaart.core.kernels.weigh import nearest_distance
+from jaart.core.kernels.weigh import any_within
 
 
 @kernel(STRICT)
@@ -29,7 +29,7 @@ def judged(near: Near, x: Vector, v: Value, bounds: Bounds, w: Array) -> tuple[i
         return r.BOUNDED, nan
     if bounds.log_weight > -inf and v.shift + log(v.weight) < bounds.log_weight:
         return r.BOUNDED_WEIGHT, nan
-    if bounds.nearest < inf and nearest_distance(near, x) > bounds.nearest:
+    if bounds.nearest < inf and not any_within(near, x, bounds.nearest):
         return r.BOUNDED_NEAREST, nan
     if bounds.angle < inf and angle_energy(v.n, v.off) > bounds.angle:
         return r.BOUNDED_ANGLE, nan

@@ -9,10 +9,10 @@ from __future__ import annotations
 from math import isfinite, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
+from jaart.core.kernels.empty_space import away
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.records import Array, Unsigned, Vector
+from jaart.core.kernels.records import Array, Empty, Unsigned, Vector
 from jaart.core.kernels.traversal import Axes, Axis, axis_of, clip, onward, spot_at
 
 #: Rays of a packet: a block of 8 × 8 pixels.
@@ -88,12 +88,12 @@ def enter(p: Array, nx: float, ny: float, nz: float, count: Unsigned) -> None:
 
 
 @kernel(STRICT)
-def look_around(p: Array, empty: NDArray[np.uint8], count: Unsigned) -> None:
+def look_around(p: Array, empty: Empty, count: Unsigned) -> None:
     """Write how far each ray's cell is from the nearest one with a surfel."""
     for lane in range(count):
         if p[STATE + lane] == WALKING:
-            i, j, k = int(p[AT + X + lane]), int(p[AT + Y + lane]), int(p[AT + Z + lane])
-            p[AWAY + lane] = float(empty[np.uint64(i), np.uint64(j), np.uint64(k)])
+            cell = int(p[AT + X + lane]), int(p[AT + Y + lane]), int(p[AT + Z + lane])
+            p[AWAY + lane] = float(away(empty, cell))
 
 
 @kernel(STRICT)
@@ -134,7 +134,7 @@ def place_ray(p: Array, lane: Unsigned, o: Vector, d: Vector, t: float) -> None:
 
 
 @kernel(STRICT)
-def walk_together(p: Array, empty: NDArray[np.uint8], free: int, even: bool, count: Unsigned) -> None:
+def walk_together(p: Array, empty: Empty, free: int, even: bool, count: Unsigned) -> None:
     """Walk until no more than a few rays are without a cell to search in.
 
     p: (ROOM,), the rays placed; free: a search begins in cells no farther than this from one with a surfel;

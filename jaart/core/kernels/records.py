@@ -204,17 +204,29 @@ class Plan(NamedTuple):
     search: int
 
 
+class Empty(NamedTuple):
+    """How far a lattice's cells are from the nearest with a surfel: in cells along the axis where that is most.
+
+    Told cell by cell near surfels, for bricks of 4 × 4 × 4 cells elsewhere. shape: of the lattice; bricks: (B,) where
+    in near the distances of a brick's cells begin, or -1 - d where none of them is nearer than d; near: distances,
+    0 = has one, 64 for a brick.
+    """
+
+    shape: Cell
+    bricks: NDArray[np.int32]
+    near: NDArray[np.uint8]
+
+
 class Cells(NamedTuple):
     """A lattice as rays cross it.
 
-    sites: its cells; empty: (nx, ny, nz) Chebyshev distance to the nearest cell with a surfel, in cells, 0 = has
-    one; halo: cells farther than this from one have no surfels near; stretches: 1 when every cell with surfels
-    near is searched from face to face, 0 when a search starts where a cell with a surfel is entered; uniform:
-    length of even steps through the cells, 0 for exact traversal.
+    sites: its cells; empty: how far each is from one with a surfel; halo: cells farther than this from one have no
+    surfels near; stretches: 1 when every cell with surfels near is searched from face to face, 0 when a search starts
+    where a cell with a surfel is entered; uniform: length of even steps through the cells, 0 for exact traversal.
     """
 
     sites: Sites
-    empty: NDArray[np.uint8]
+    empty: Empty
     halo: int
     stretches: int
     uniform: float
@@ -225,8 +237,8 @@ class RayEnd(NamedTuple):
 
     energy: length of the last step, or the minimum; off: off-centre value; iterations: steps of the last start;
     evaluations: of all starts; used: surfels summed over them; cells: cells or balls visited; lowered:
-    evaluations with fewer degrees than asked for; gap: as of End; rows: written to the log; missing: a ball whose
-    surfels are not gathered yet, else -1.
+    evaluations with fewer degrees than asked for; gap: as of End; rows: written to the log; missing: 0 where
+    more balls are to be listed first, else -1.
     """
 
     state: int

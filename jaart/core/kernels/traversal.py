@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core.kernels.empty_space import away
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.records import Array, Cell, Vector
+from jaart.core.kernels.records import Array, Cell, Empty, Vector
 
 #: A smaller component of a unit direction moves nothing within a lattice.
 STILL = 1e-290
@@ -181,18 +182,18 @@ def face_below(axis: Axis) -> int:
 
 
 @kernel(STRICT)
-def start_at(empty: NDArray[np.uint8], axes: Axes, cell: Cell) -> Cell:
+def start_at(empty: Empty, axes: Axes, cell: Cell) -> Cell:
     """The cell with a surfel that a ray touches while it is in a cell; (-1, -1, -1) for none.
 
     A ray within a face, an edge or through corners along an axis touches two or four cells at once.
     """
-    if empty[cell] == 0:
+    if away(empty, cell) == 0:
         return cell
-    if empty[cell] == 1:
+    if away(empty, cell) == 1:
         for i in range(face_below(axes[0]) + 1):
             for j in range(face_below(axes[1]) + 1):
                 for k in range(face_below(axes[2]) + 1):
                     touched = (max(cell[0] - i, 0), max(cell[1] - j, 0), max(cell[2] - k, 0))
-                    if empty[touched] == 0:
+                    if away(empty, touched) == 0:
                         return touched
     return -1, -1, -1

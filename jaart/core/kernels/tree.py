@@ -13,8 +13,8 @@ from jaart.core.kernels.records import Array, Vector
 
 Ints = NDArray[np.int64]
 
-#: A node of so many items or fewer is a leaf.
-LEAF = 6
+#: A node of so many items or fewer is a leaf; of balls, which are tested as vectors, there are more.
+LEAF, BALL_LEAF = 6, 12
 #: Levels that a tree may have: it halves, so 2^48 items would fit.
 DEEPEST = 48
 #: By what share of itself a t is moved outwards: it went through four roundings, each of 2^-53 at most.
@@ -132,13 +132,20 @@ def clip(near: float, far: float, o: float, inverse: float, low: float, high: fl
 
 
 @kernel(STRICT, inline=True)
-def span(low: Array, high: Array, node: int, o: Vector, inverse: Vector) -> tuple[float, float]:
-    """First and last t at which a line may be in a node's box; first > last when it misses it for certain.
+def span_of(low: Vector, high: Vector, o: Vector, inverse: Vector) -> tuple[float, float]:
+    """First and last t at which a line may be in a box; first > last when it misses it for certain.
 
     o: origin; inverse: 1 over each component of the direction, infinite where that is 0. Rounding only widens
     the interval, and a line within a face of the box is in it.
     """
-    near, far = clip(-np.inf, np.inf, o[0], inverse[0], low[node, 0], high[node, 0])
-    near, far = clip(near, far, o[1], inverse[1], low[node, 1], high[node, 1])
-    near, far = clip(near, far, o[2], inverse[2], low[node, 2], high[node, 2])
+    near, far = clip(-np.inf, np.inf, o[0], inverse[0], low[0], high[0])
+    near, far = clip(near, far, o[1], inverse[1], low[1], high[1])
+    near, far = clip(near, far, o[2], inverse[2], low[2], high[2])
     return near * (1.0 - copysign(SLACK, near)), far * (1.0 + copysign(SLACK, far))
+
+
+@kernel(STRICT, inline=True)
+def span(low: Array, high: Array, node: int, o: Vector, inverse: Vector) -> tuple[float, float]:
+    """The same of a node's box."""
+    return span_of((low[node, 0], low[node, 1], low[node, 2]), (high[node, 0], high[node, 1], high[node, 2]), o,
+                   inverse)

@@ -13,7 +13,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.records import Cells, Sites
+from jaart.core.kernels.records import Cells, Empty, Sites
 
 
 @intrinsic
@@ -35,6 +35,12 @@ def unowned_sites(sites: Sites) -> Sites:
 
 
 @kernel(STRICT)
+def unowned_empty(empty: Empty) -> Empty:
+    """Distances, their arrays without owners."""
+    return Empty(empty.shape, unowned(empty.bricks), unowned(empty.near))
+
+
+@kernel(STRICT)
 def unowned_cells(cells: Cells) -> Cells:
     """A lattice, its arrays without owners."""
-    return Cells(unowned_sites(cells.sites), unowned(cells.empty), cells.halo, cells.stretches, cells.uniform)
+    return Cells(unowned_sites(cells.sites), unowned_empty(cells.empty), cells.halo, cells.stretches, cells.uniform)

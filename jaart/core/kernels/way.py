@@ -5,11 +5,9 @@ from __future__ import annotations
 from math import floor
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from jaart.core.kernels.empty_space import away
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.records import Cell, Cells, Vector
+from jaart.core.kernels.records import Cell, Cells, Empty, Vector
 from jaart.core.kernels.traversal import Axes, face_below, holds, onward, spot_at, start_at, whole
 
 #: No cell.
@@ -46,14 +44,13 @@ def way_of(cells: Cells, axes: Axes, enter: float, leave: float, least: float) -
 
 
 @kernel(STRICT, inline=True)
-def distance(empty: NDArray[np.uint8], spot: Vector) -> int:
+def distance(empty: Empty, spot: Vector) -> int:
     """Distance of a cell from the nearest one with a surfel."""
-    i, j, k = whole(spot)
-    return int(empty[np.uint64(i), np.uint64(j), np.uint64(k)])
+    return away(empty, whole(spot))
 
 
 @kernel(STRICT, inline=True)
-def begins_in(empty: NDArray[np.uint8], axes: Axes, spot: Vector, away: int, way: Way) -> Cell:
+def begins_in(empty: Empty, axes: Axes, spot: Vector, away: int, way: Way) -> Cell:
     """The cell that a search begins in while the ray is in a cell: it, one beside it, or (-1, -1, -1) for none.
 
     away: its distance from the nearest cell with a surfel.
@@ -88,7 +85,7 @@ def after(axes: Axes, spot: Vector, t: float, away: int, way: Way) -> tuple[floa
 
 
 @kernel(STRICT, inline=True)
-def walk(empty: NDArray[np.uint8], axes: Axes, spot: Vector, t: float, way: Way) -> tuple[float, Vector, Cell, int]:
+def walk(empty: Empty, axes: Axes, spot: Vector, t: float, way: Way) -> tuple[float, Vector, Cell, int]:
     """On from a cell to the first that a search begins in: t, the cell, where it begins, and how many were visited.
 
     It begins in (-1, -1, -1) when the ray leaves the lattice.

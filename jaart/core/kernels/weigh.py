@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, sqrt
+from math import sqrt
 
 import numpy as np
 
@@ -172,8 +172,11 @@ def slope_factor(weight: int, h: float, y: float, w: float) -> float:
 
 
 @kernel()
-def nearest_distance(near: Near, x: Vector) -> float:
-    """Distance of x to the nearest surfel, infinity where there is none."""
-    if near.size == 0:
-        return inf
-    return sqrt(square_distance(near, nearest(near, x, 1.0), x, 1.0))
+def any_within(near: Near, x: Vector, distance: float) -> bool:
+    """Whether a surfel is no farther from x than a distance. All are looked at, as vectors, which costs less than to
+    stop at the first.
+    """
+    count = 0.0
+    for i in range(near.size):
+        count += 1.0 if square_distance(near, i, x, 1.0) <= distance * distance else 0.0
+    return count > 0.0
