@@ -69,6 +69,7 @@ class StepBar(QWidget):
         super().resizeEvent(event)
         narrow = self.width() < self._line.itemAt(0).sizeHint().width() + self._longest + 20
         self._line.setDirection(QBoxLayout.Direction.TopToBottom if narrow else QBoxLayout.Direction.LeftToRight)
+        self.setMinimumHeight(self.layout().totalHeightForWidth(self.width()))
 
     def _state(self) -> str:
         trace = self.model.trace

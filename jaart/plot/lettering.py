@@ -107,7 +107,8 @@ class Words(Text):
     """A line of text beside a place in an axes.
 
     at: the place, in its data or, with share, in shares of its width and height; away: from there to the first
-    letter [points]; inside: left out where the place is not within the axes; halo: a colour around the letters.
+    letter [points]; inside: left out where the place is not within the axes, and never above them; halo: a colour
+    around the letters.
     """
 
     def __init__(self, at: tuple[float, float], text: str, colour: str, size: float, away: tuple[float, float],
@@ -137,7 +138,11 @@ class Words(Text):
 
     def _first(self, place: tuple[float, float]) -> tuple[float, float]:
         scale = self._dpi() / 72
-        return place[0] + scale * self.away[0], place[1] + scale * self.away[1]
+        x, y = place[0] + scale * self.away[0], place[1] + scale * self.away[1]
+        if self.inside:
+            _, height, depth = measure(self.look, self._dpi())
+            y = min(y, self.axes.bbox.y1 - (height - depth))
+        return x, y
 
     def _dpi(self) -> float:
         return float(self.axes.figure.dpi)

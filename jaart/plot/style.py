@@ -182,7 +182,7 @@ def note(axes: Axes, theme: Theme, message: str) -> None:
 def label(axes: Axes, theme: Theme, texts: Iterable[tuple[float, float, str, str]], apart: float = 15.0) -> None:
     """Short labels (x, y, text, colour) in order of importance, left out where they would overlap.
 
-    Names of queries (Q…) go above their place, of next points (H…) below; none leaves the axes at the top.
+    Names of queries (Q…) go above their place but within the axes, of next points (H…) below.
     apart: least distance of two labels in points. The axes must have its limits.
     """
     from jaart.plot.lettering import Words
@@ -190,9 +190,8 @@ def label(axes: Axes, theme: Theme, texts: Iterable[tuple[float, float, str, str
     placed: list[tuple[float, float]] = []
     scale = 72.0 / axes.figure.dpi
     for x, y, text, colour in texts:
-        left, low = axes.transData.transform((x, y)) * scale
-        dx, dy = (4, -11) if text.startswith("H") else (4, min(4, axes.bbox.y1 * scale - low - 1.1 * SMALL))
-        px, py = left + dx, low + dy
+        dx, dy = (4, -11) if text.startswith("H") else (4, 4)
+        px, py = axes.transData.transform((x, y)) * scale + (dx, dy)
         if all(abs(px - qx) > apart or abs(py - qy) > 0.6 * apart for qx, qy in placed):
             placed.append((px, py))
             words = Words((x, y), text, colour, SMALL, (dx, dy), "bold", inside=True, halo=theme.face)
