@@ -42,7 +42,7 @@ from jaart.core.kernels.near import near_in, surfels_near
 from jaart.core.kernels.packet import is_bad
 from jaart.core.kernels.pierce import NOTHING, ROOM, Balls, chord, next_item, push_root, unowned_balls
 from jaart.core.kernels.ray import added, no_hit, ray_of, visiting, write_end
-from jaart.core.kernels.records import Array, Out, Plan, RayEnd, Sites, Start, Vector
+from jaart.core.kernels.records import Array, End, Out, Plan, RayEnd, Sites, Start, Vector
 from jaart.core.kernels.stretch import has_hit
 from jaart.core.kernels.tree import Tree
 from jaart.core.kernels.unowned import unowned
@@ -133,6 +133,19 @@ def in_units(tree: Tree, o: Vector, h: float) -> Vector:
 
 
 @kernel(STRICT, inline=True)
+def search_ball(balls: Balls, plan: Plan, guess: Array, start: Start, d: Vector, rows: Array, end: RayEnd, work: Array,
+                fit: Array) -> tuple[End, RayEnd]:
+    """How the search from one more start ended, and the ray with it; guess: what is kept at the ball's centre."""
+    if plan.how.kind == r.CENTRES:
+        show_centre(guess, fit)
+    one = search_from(plan.search, balls.sites, plan.rule, plan.how, plan.bounds, d, start, rows, end.rows, work, fit)
+    if one.steps > 0 or one.state != r.BACKGROUND:
+        end = added(end, one)
+        end_log(rows, end.rows if one.steps > 0 else 0, one.state)
+    return one, end
+
+
+@kernel(STRICT, inline=True)
 def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, room: Room, listed: Listed, rows: Array,
                    work: Array, fit: Array, keys: Array, items: Ints) -> RayEnd:
     """The first hit of a ray, or how its last start ended; it ends at once where the pool is short of room, or more
@@ -175,14 +188,8 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, room: Room, l
         if item < count and balls.stretches == 0 and balls.any_hit == 0:
             size = push(keys, items, size, start.t + start.s, count + ball)
             continue
-        if plan.how.kind == r.CENTRES:
-            show_centre(guess, fit)
-        one = search_from(plan.search, balls.sites, plan.rule, plan.how, plan.bounds, d, start, rows, end.rows, work,
-                          fit)
+        one, end = search_ball(balls, plan, guess, start, d, rows, end, work, fit)
         number += 1
-        if one.steps > 0 or one.state != r.BACKGROUND:
-            end = added(end, one)
-            end_log(rows, end.rows if one.steps > 0 else 0, one.state)
         order = one.t if one.f != one.f else one.f  # of a mean of points what it was placed by
         if has_hit(one.state) and (not found or order < first):
             found, best, first, limit = True, end, order, order if balls.stretches == 1 else order - slack

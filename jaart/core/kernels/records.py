@@ -277,13 +277,12 @@ class Out(NamedTuple):
     gradients: NDArray[np.int32]
 
 
-#: Columns of a step's row in the log.
-(START, T, X, Y, Z, AX, AY, AZ, NX, NY, NZ, STEP, WEIGHT, OFF, CELL_I, CELL_J, CELL_K, END) = range(18)
-LOG_WIDTH = 18
+#: Columns of a step's row in the log, and their number.
+(START, T, X, Y, Z, AX, AY, AZ, NX, NY, NZ, STEP, WEIGHT, OFF, CELL_I, CELL_J, CELL_K, END, LOG_WIDTH) = range(19)
 
 #: Numbers of the end states, in the order of STATUS_NAMES; CONTINUE while a search goes on.
-(CONVERGED, BACKGROUND, CAP, LEFT_TRUST, PARALLEL, FEW_NEIGHBOURS, UNDEFINED_NORMAL, BOUNDED, FLOOR,
- UNDECIDED, BAD_RAY, BOUNDED_WEIGHT, BOUNDED_NEAREST, BOUNDED_ANGLE, BOUNDED_GAP) = range(15)
+(CONVERGED, BACKGROUND, CAP, LEFT_TRUST, PARALLEL, FEW_NEIGHBOURS, UNDEFINED_NORMAL, BOUNDED, FLOOR, UNDECIDED, BAD_RAY,
+ BOUNDED_WEIGHT, BOUNDED_NEAREST, BOUNDED_ANGLE, BOUNDED_GAP) = range(15)
 CONTINUE = 255
 
 #: Numbers of weights, normals, searches and energies.
