@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core.kernels.blocks import HEAP
 from jaart.core.kernels.heap import pop, push
 from jaart.core.kernels.jit import EXACT, STRICT, kernel
 from jaart.core.kernels.records import Array, Sites, Vector
@@ -97,9 +98,12 @@ def push_children(balls: Balls, node: int, o: Vector, d: Vector, inverse: Vector
 @kernel(STRICT, inline=True)
 def next_item(balls: Balls, o: Vector, d: Vector, inverse: Vector, limit: float, keys: Array, items: Ints,
               size: int) -> tuple[int, int]:
-    """The heap's size, and the nearest ball or promise before a limit; NOTHING for none, ROOM for a full heap."""
+    """The heap's size, and the nearest ball or promise before a limit; NOTHING for none, ROOM for a full heap,
+    which is written down.
+    """
     while size > 0 and keys[0] < limit:
         if size > keys.shape[0] - LEAF_ROOM:
+            balls.sites.pool[HEAP] = 1
             return size, ROOM
         size = pop(keys, items, size)
         if items[size] >= 0:

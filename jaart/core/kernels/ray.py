@@ -123,13 +123,12 @@ def behind(end: RayEnd, rows: Array) -> RayEnd:
 def search_on(cells: Cells, plan: Plan, axes: Axes, way: Way, at: float, spot: Vector, begin: Cell, visited: int,
               o: Vector, d: Vector, rows: Array, work: Array, fit: Array) -> RayEnd:
     """The first hit of a ray from the first cell on that a search begins in; arguments as of `walk` and `trace_ray`."""
-    end, number, before, more, inner = no_hit(r.BACKGROUND), 0, nan, visited, way.first == 0.0
+    end, before, more, inner = no_hit(r.BACKGROUND), nan, visited, way.first == 0.0
     t = at
     while True:
         before = before if more == 1 and way.uniform == 0.0 else nan
-        start = start_of(cells, axes, spot, begin, o, d, at, way, plan.how.trust, before, number)
+        start = start_of(cells, axes, spot, begin, o, d, at, way, plan.how.trust, before, int(fit[r.STARTS]))
         end, before = search_cell(cells, plan, start, d, rows, end, work, fit)
-        number += 1
         if inner and has_hit(end.state) and end.t < FARTHEST * plan.rule.h:  # perhaps it is the ray's own origin
             found, inner = leaving(cells, plan, axes, o, d, work, fit), False
             end = counting(end, found)

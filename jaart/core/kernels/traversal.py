@@ -117,8 +117,9 @@ def exit_t(axis: Axis, i: float, reach: float) -> float:
 @kernel(STRICT, inline=True)
 def index_after(axis: Axis, i: float, reach: float, own: float, t: float) -> float:
     """The index after leaving a block at t: over the far face where own == t, else where the ray is."""
-    elsewhere = i if reach == 0.0 else index_at(axis, t)
-    return i + axis.way * (reach + 1.0) if own == t else elsewhere
+    if own == t:
+        return i + axis.way * (reach + 1.0)
+    return i if reach == 0.0 else index_at(axis, t)
 
 
 @kernel(STRICT, inline=True)
