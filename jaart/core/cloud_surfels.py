@@ -12,8 +12,9 @@ from jaart.core import cloud, memory, orient
 from jaart.core.balls import Cloud
 from jaart.core.chosen import Chosen
 from jaart.core.kernels.gather import Grid
+from jaart.core.kernels.grid_sort import number_cells, sort_by_key
 from jaart.core.meaning import estimates_normals
-from jaart.core.memory import COUNTED, check_near, pieces
+from jaart.core.memory import COUNTED, check_near
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
 from jaart.core.tree import ball_tree
@@ -22,6 +23,8 @@ from jaart.core.tree import ball_tree
 MOST_CELLS = 1 << 20
 #: In so many rows of cells points are counted one by one.
 FEW_ROWS = 64
+#: With more cells than so many for each point, points are sorted without counting them cell by cell.
+FEW_KEYS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,10 +65,10 @@ def cloud_of(scene: Scene, settings: Settings, values: Chosen) -> Cloud:
     normals = points_of(scene, settings, values).normal if has_normals(scene, settings, values) else np.empty((0, 3))
     if values.method == "cylinder":
         return _discs(scene, points, normals, values.h)
-    kept = cloud.cover(scene, settings.ball_k)
-    centres, radii = points[kept], cloud.ball_radii(scene, settings.ball_k)[kept]
+    kept, radii = cloud.cover(scene, settings.ball_k)
+    centres = points[kept]
     if alone(scene):  # nothing but h says how large a single surfel is
-        radii[:] = values.h
+        radii = np.full(len(kept), values.h)
     reach = radii + values.radius if values.neighbourhood == "ball" else _reach(scene, settings.k, kept, radii)
     what = f"k = {settings.k}" if math.isinf(values.radius) else f"radius = {values.radius:g}"
     grid = _grid(points, normals, float(np.median(reach)))
@@ -117,13 +120,18 @@ def _reach(scene: Scene, k: int, kept: NDArray[np.int64], radii: Array) -> Array
 
 def _grid(points: Array, normals: Array, edge: float) -> Grid:
     """The points sorted by the cells of a grid, about as wide as a neighbourhood; normals: (N, 3), or (0, 3)."""
-    low, size = points.min(axis=0), np.ptp(points, axis=0)
-    edge = max(edge, float(size.max()) / MOST_CELLS) or 1.0
-    shape = (size / edge).astype(np.int64) + 1
-    keys = np.empty(len(points), np.int64)
-    for piece in pieces(len(points)):
-        cell = np.minimum(((points[piece] - low) / edge).astype(np.int64), shape - 1)
-        keys[piece] = (cell[:, 0] * shape[1] + cell[:, 1]) * shape[2] + cell[:, 2]
-    order = np.argsort(keys, kind="stable").astype(np.int32)
-    keys = keys[order]
-    return Grid(np.array(low), edge, shape, keys, points[order], normals[order] if len(normals) else normals, order)
+    low, high = (np.array(corner) for corner in cloud.corners(points))
+    edge = max(edge, float((high - low).max()) / MOST_CELLS) or 1.0
+    shape, keys = ((high - low) / edge).astype(np.int64) + 1, np.empty(len(points), np.int64)
+    number_cells(points, low, edge, shape, keys)
+    order = _sorted(keys, int(np.prod(shape, dtype=object)))
+    return Grid(low, edge, shape, keys[order], points[order], normals[order] if len(normals) else normals, order)
+
+
+def _sorted(keys: NDArray[np.int64], count: int) -> NDArray[np.int32]:
+    """Numbers of the items by rising key, equal ones as they stand; count: of the keys that there may be."""
+    if count > FEW_KEYS * len(keys):
+        return np.argsort(keys, kind="stable").astype(np.int32)
+    order = np.empty(len(keys), np.int64)
+    sort_by_key(keys, np.zeros(count + 1, np.int64), order)
+    return order.astype(np.int32)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core.kernels.grid_sort import number_cells, sort_by_key
 from jaart.core.kernels.nearest import Cells, find_nearest
 from jaart.core.pieces import do_each
 from jaart.core.scene import Array
@@ -86,22 +87,18 @@ def even_cells(points: Array, k: int) -> Cells | None:
     if float(np.prod(size / edge + 1.0)) > MOST_CELLS * len(points):
         return None
     keys, shape = _keys(points, low, size, edge)
-    count = np.bincount(keys, minlength=int(shape.prod()))
+    first, order = np.zeros(int(shape.prod()) + 1, np.int64), np.empty(len(points), np.int64)
+    sort_by_key(keys, first, order)
+    count = np.diff(first)
     if float(np.dot(count, count)) > MOST_BESIDE * k * len(points):
         return None
-    first = np.zeros(len(count) + 1, np.int64)
-    np.cumsum(count, out=first[1:])
-    order = np.argsort(keys, kind="stable").astype(np.int64, copy=False)
     return Cells(low, edge, shape, first, points[order], order)
 
 
 def _keys(points: Array, low: Array, size: Array, edge: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Number of the cell, C order, that each point is in, and how many cells there are along each axis."""
-    shape = (size / edge).astype(np.int64) + 1
-    keys = np.zeros(len(points), np.int64)
-    for axis in range(3):
-        at = ((points[:, axis] - low[axis]) / edge).astype(np.int64)
-        keys = keys * shape[axis] + np.minimum(at, shape[axis] - 1)
+    shape, keys = (size / edge).astype(np.int64) + 1, np.empty(len(points), np.int64)
+    number_cells(points, low, edge, shape, keys)
     return keys, shape
 
 

@@ -56,14 +56,14 @@ def tiles(pixels: Pixels, threads: int = 1, most: int = TILE) -> list[Pixels]:
 
 
 def columns_for(count: int) -> Out:
-    """Columns for so many rays, each row of which is written when its ray has ended."""
-    def numbers() -> NDArray[np.int32]:
-        return np.empty(count, np.int32)
+    """Columns for so many rays, each row of which is written when its ray has ended.
 
-    def counts() -> NDArray[np.int32]:  # of what not every kind of tracer has
-        return np.zeros(count, np.int32)
-
-    return Out(t=np.empty(count), point=np.empty((count, 3)), normal=np.empty((count, 3)), energy=np.empty(count),
-               off_centre=np.empty(count), iterations=numbers(), evaluations=numbers(), neighbours=numbers(),
-               cells=numbers(), lowered=numbers(), gap=np.empty(count), status=np.empty(count, np.uint8),
-               starts=counts(), eigenvectors=counts(), gradients=counts())
+    They lie in two pieces, large enough for a system to give them in few, large pages.
+    """
+    floats, numbers = np.empty(10 * count), np.empty((8, count), np.int32)
+    t, energy, off_centre, gap = floats[:4 * count].reshape(4, count)
+    point, normal = floats[4 * count:].reshape(2, count, 3)
+    numbers[5:] = 0  # not every kind of tracer counts these
+    return Out(t=t, point=point, normal=normal, energy=energy, off_centre=off_centre, iterations=numbers[0],
+               evaluations=numbers[1], neighbours=numbers[2], cells=numbers[3], lowered=numbers[4], gap=gap,
+               status=np.empty(count, np.uint8), starts=numbers[5], eigenvectors=numbers[6], gradients=numbers[7])

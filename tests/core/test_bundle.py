@@ -16,8 +16,8 @@ from jaart.core.scene import Scene
 RNG = np.random.default_rng(5)
 COLUMNS = ("t", "point", "normal", "energy", "off_centre", "iterations", "evaluations", "neighbours", "cells",
            "lowered", "gap", "status", "starts", "eigenvectors")
-SHELLS = Scene("shells", points=np.concatenate([bumpy_sphere(2500).points * size for size in (1.0, 0.7, 0.4)]))
-DENSE = bumpy_sphere(60_000)
+SHELLS = Scene("shells", points=np.concatenate([bumpy_sphere(9000).points * size for size in (1.0, 0.7, 0.4)]))
+DENSE = bumpy_sphere(200_000)
 SIZE = (40, 24)
 
 

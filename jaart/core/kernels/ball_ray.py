@@ -171,7 +171,7 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, room: Room, l
         if item == NOTHING:
             break
         ball = item if item < count else item - count
-        if item == ROOM or load(balls.sites.slots, ball) == 0 and not make_ready(balls.sites, plan, ball, work, fit):
+        if item == ROOM or (load(balls.sites.slots, ball) == 0 and not make_ready(balls.sites, plan, ball, work, fit)):
             return end
         guess = floats_at(guess_at(balls.sites, ball), GUESS_WIDTH)
         if begin.used < 0 and begin.t == 0.0 and may_be_left(balls, ball, o, plan.rule.h):

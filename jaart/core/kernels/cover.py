@@ -12,13 +12,21 @@ Ints = NDArray[np.int64]
 Rows = NDArray[np.int32]
 
 
+@kernel(STRICT, inline=True)
+def is_held(distance: Array, radii: Array, i: int, at: int, j: int, share: float) -> bool:
+    """Whether ball i holds the core of ball j, its neighbour number at; of those as far as the last, others may be
+    missing, so that none counts.
+    """
+    return distance[i, at] + share * radii[j] <= radii[i] and distance[i, at] < distance[i, distance.shape[1] - 1]
+
+
 @kernel(STRICT, entry=True)
 def in_question(distance: Array, index: Rows, radii: Array, share: float, asked: NDArray[np.bool_]) -> None:
     """Mark the balls of which one holds the core of the other; the arguments, but for asked, as of `keep`."""
     for i in range(index.shape[0]):
         for at in range(index.shape[1]):
             j = index[i, at]
-            if distance[i, at] + share * radii[j] <= radii[i]:
+            if is_held(distance, radii, i, at, j, share):
                 asked[i] = asked[j] = True
 
 
@@ -36,5 +44,5 @@ def keep(distance: Array, index: Rows, radii: Array, order: Ints, rank: Rows, sh
         if kept[i]:
             for at in range(index.shape[1]):
                 j = index[i, at]
-                if distance[i, at] + share * radii[j] <= radii[i] and rank[j] > turn:
+                if is_held(distance, radii, i, at, j, share) and rank[j] > turn:
                     kept[j] = False

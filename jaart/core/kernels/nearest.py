@@ -50,13 +50,23 @@ def insert(squares: Array, index: Rows, row: int, square: float, number: int) ->
 
 
 @kernel(STRICT, inline=True)
-def around(cells: Cells, axis: int, x: float) -> tuple[int, int, float]:
-    """First and last cell along an axis beside the one that holds x, and how far x is from what lies beyond them."""
+def around(cells: Cells, axis: int, x: float) -> tuple[int, float, float]:
+    """The cell along an axis that holds x, and how far x is from its lower and upper end, in edges."""
     inner = (x - cells.low[axis]) / cells.edge
-    at, last = min(int(floor(inner)), cells.shape[axis] - 1), cells.shape[axis] - 1
-    below = inner - (at - 1) if at > 1 else inf
-    above = at + 2 - inner if at + 2 <= last else inf
-    return max(at - 1, 0), min(at + 1, last), min(below, above) * cells.edge
+    at = min(int(floor(inner)), cells.shape[axis] - 1)
+    return at, inner - at, at + 1 - inner
+
+
+@kernel(STRICT, inline=True)
+def beyond(cells: Cells, axis: int, at: int, below: float, above: float) -> float:
+    """How far x is along an axis from the points that lie beyond the cells beside its own."""
+    return min(below + 1.0 if at > 1 else inf, above + 1.0 if at + 2 < cells.shape[axis] else inf) * cells.edge
+
+
+@kernel(STRICT, inline=True)
+def gap(step: int, below: float, above: float) -> float:
+    """How far x is along an axis from the cells one step aside of its own, in edges."""
+    return 0.0 if step == 0 else (max(below, 0.0) if step < 0 else max(above, 0.0))
 
 
 @kernel(STRICT, entry=True)
@@ -64,24 +74,32 @@ def find_nearest(cells: Cells, begin: int, end: int, distance: Array, index: Row
     """Write the nearest others of some of the sorted points into their rows, those that are certain.
 
     begin, end: which points; distance, index: (N, k) rows by the points' numbers; a row that is not certain begins
-    with -1.
+    with -1. The cells' rows along z are looked through from the point's own one outwards.
     """
     k = index.shape[1]
     for own in range(begin, end):
         row, x = cells.order[own], (cells.points[own, 0], cells.points[own, 1], cells.points[own, 2])
         for a in range(k):
             distance[row, a], index[row, a] = inf, -1
-        i0, i1, x_far = around(cells, 0, x[0])
-        j0, j1, y_far = around(cells, 1, x[1])
-        k0, k1, z_far = around(cells, 2, x[2])
-        for line in range((i1 - i0 + 1) * (j1 - j0 + 1)):
-            i, j = i0 + line // (j1 - j0 + 1), j0 + line % (j1 - j0 + 1)
+        at_i, x_below, x_above = around(cells, 0, x[0])
+        at_j, y_below, y_above = around(cells, 1, x[1])
+        at_k, z_below, z_above = around(cells, 2, x[2])
+        low, high = max(at_k - 1, 0), min(at_k + 1, cells.shape[2] - 1)
+        for turn in range(9):
+            di, dj = (0, -1, 1)[turn // 3], (0, -1, 1)[turn % 3]
+            i, j = at_i + di, at_j + dj
+            if not (0 <= i < cells.shape[0] and 0 <= j < cells.shape[1]):
+                continue
+            dx, dy = gap(di, x_below, x_above) * _SURE * cells.edge, gap(dj, y_below, y_above) * _SURE * cells.edge
+            if dx * dx + dy * dy >= distance[row, k - 1]:
+                continue
             cell = (i * cells.shape[1] + j) * cells.shape[2]
-            for at in range(cells.first[cell + k0], cells.first[cell + k1 + 1]):
+            for at in range(cells.first[cell + low], cells.first[cell + high + 1]):
                 square = square_between(cells.points, at, x)
                 if square < distance[row, k - 1] and at != own:
                     insert(distance, index, row, square, cells.order[at])
-        far = min(x_far, min(y_far, z_far)) * _SURE
+        far = min(beyond(cells, 0, at_i, x_below, x_above), min(beyond(cells, 1, at_j, y_below, y_above),
+                                                                beyond(cells, 2, at_k, z_below, z_above))) * _SURE
         if distance[row, k - 1] < far * far:
             for a in range(k):
                 distance[row, a] = sqrt(distance[row, a])

@@ -35,9 +35,9 @@ def h_of_a_fiftieth_spacing() -> Outcome:
     scene = cloud(points, np.tile((0.0, 0.0, 1.0), (len(points), 1)))
     aimed = points[np.abs(points[:, :2]).max(axis=1) <= 1]
     rays = aimed * (1, 1, 0) + (0.3, 0.2, 5.0)
-    errors = []
+    errors, settings = [], FREE.replace(h=0.02, radius=5.0, tolerance=1e-12)
     for search in ("iterate", "safe", "newton"):
-        hits = shot(scene, FREE.replace(h=0.02, radius=5.0, search=search), rays, np.tile(DOWN, (len(rays), 1)))
+        hits = shot(scene, settings.replace(search=search), rays, np.tile(DOWN, (len(rays), 1)))
         errors.append(float(np.abs(hits.t - (5.0 - aimed[:, 2])).max()))
     holes = shot(scene, Settings().replace(h=0.02), rays, np.tile(DOWN, (len(rays), 1))).counts()
     return Outcome(f"{len(rays)} rays, 3 searches: largest error of t {largest(errors):.1e}; with the usual radius "
