@@ -31,8 +31,8 @@ T = TypeVar("T")
 CHUNK, LARGER = 1 << 20, 8
 #: Scratch is for so many surfels, and the heap for so many entries, until a place or a ray needs more.
 SURFELS, HEAP = 256, 4096
-#: Scratch for each surfel that may be near a point: its weight, its place in the local frame, its row of a fit.
-SCRATCH_A_SURFEL = 24
+#: Scratch for each surfel that may be near a point: its row of a fit, its weights, its number among those with one.
+SCRATCH_A_SURFEL = 25
 #: Words of the block of places that no surfel is near: any number that is asked of it can be read.
 _EMPTY_WORDS = 64
 
@@ -231,4 +231,5 @@ def _bricked(shape: Cell, at: Ints, sizes: Ints) -> Ints:
 
 def scratch(most: int) -> tuple[Array, Array]:
     """Room for the weights and fits of so many surfels, and for what is kept of a centre, for one thread."""
-    return np.empty(SCRATCH_A_SURFEL * max(most, 1)), np.zeros(FIT_SIZE + GUESS_WIDTH)
+    wide = -(-max(most, 1) // blocks.VECTOR) * blocks.VECTOR
+    return np.empty(SCRATCH_A_SURFEL * wide), np.zeros(FIT_SIZE + GUESS_WIDTH)

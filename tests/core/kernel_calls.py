@@ -18,7 +18,7 @@ from jaart.core.kernels.near import surfels_near
 from jaart.core.kernels.records import Cell, Near, Rule, Sites, Value
 from jaart.core.kernels.tangent import tangent_covariance, tangent_surfel
 from jaart.core.kernels.weigh import weigh
-from jaart.core.places import SCRATCH_A_SURFEL
+from jaart.core.places import scratch
 
 Array = NDArray[np.float64]
 Vectors = Sequence[Sequence[float]]
@@ -60,7 +60,7 @@ def place(x: Sequence[float]) -> tuple[float, float, float]:
 
 def work_for(near: Near) -> Array:
     """Scratch as `places.scratch` makes it."""
-    return np.empty(SCRATCH_A_SURFEL * max(int(near.size), 1))
+    return scratch(int(near.size))[0]
 
 
 def weights_of(near: Near, x: Sequence[float], rule: Rule) -> tuple[Array, float, float]:

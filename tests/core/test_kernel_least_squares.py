@@ -13,9 +13,9 @@ Array = NDArray[np.float64]
 
 
 def solved(matrix: Array, right: Array, base: int = 0) -> tuple[Array, float]:
-    """The kernel's solution and its ratio, with the system from `base` on in an array with a border of 7s."""
+    """The kernel's solution and its ratio: the system stands from `base` on, with room for a column, between 7s."""
     rows, count = matrix.shape
-    work = np.full(base + rows * (count + 1) + 3, 7.0)
+    work = np.full(base + rows * (count + 2) + 3, 7.0)
     work[base:base + rows * (count + 1)] = np.concatenate([matrix.T.ravel(), right])
     x = np.full(count + 1, 7.0)
     ratio = solve(work, np.uint64(base), np.uint64(rows), np.uint64(count), x)
@@ -93,9 +93,9 @@ def test_too_few_rows_are_told() -> None:
 def test_leading_columns_are_solved_from_the_same_factors() -> None:
     rng = np.random.default_rng(5)
     matrix, right = rng.normal(size=(30, 6)), rng.normal(size=30)
-    work = np.concatenate([matrix.T.ravel(), right])
+    work = np.concatenate([matrix.T.ravel(), right, np.empty(30)])
     base, rows = np.uint64(0), np.uint64(30)
-    factorise(work, base, rows, np.uint64(6))
+    factorise(work, base, rows, np.uint64(6), np.uint64(7 * 30))
     for count in (1, 3, 6):
         x = np.zeros(6)
         substitute(work, base, rows, np.uint64(count), np.uint64(6 * 30), x)

@@ -54,6 +54,16 @@ def test_terms() -> None:
 
 
 @pytest.mark.parametrize("degree", range(5))
+def test_rows_of_zeros_change_nothing(degree: int) -> None:
+    u, v, weight = disc(41, 3)
+    height = 0.2 * u * u + 0.1 * v
+    filled = (np.concatenate([column, np.zeros(7)]) for column in (u, v, height, weight))
+    used, coefficients = fitted(*filled, degree)
+    assert used == degree
+    assert coefficients == pytest.approx(fitted(u, v, height, weight, degree)[1], rel=1e-11, abs=1e-13)
+
+
+@pytest.mark.parametrize("degree", range(5))
 @pytest.mark.parametrize("rows", [24, 40, 41, 100])
 def test_fits_are_right_to_rounding(degree: int, rows: int) -> None:
     u, v, weight = disc(rows, rows)

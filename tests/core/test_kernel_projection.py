@@ -14,6 +14,7 @@ from jaart.core.io import load
 from jaart.core.kernels import polynomial, project, reference_plane
 from jaart.core.kernels import records as r
 from jaart.core.kernels.vectors import frame
+from jaart.core.places import scratch
 from jaart.core.quality import quality
 from jaart.core.records import Hits
 from jaart.core.render import render
@@ -52,7 +53,7 @@ def rule_of(h: float, weight: str, kind: str, degree: int = 2) -> r.Rule:
 def evaluated(x: list[float], points: Points, normals: Points, h: float, weight: str = "gaussian", kind: str = "surfel",
               degree: int = 2) -> tuple[r.Value, Array, Array]:
     """The value at x, the scratch array and the polynomial."""
-    work, coefficients = np.full(24 * len(points), np.nan), np.full(r.FIT_SIZE, np.nan)
+    work, coefficients = np.full_like(scratch(len(points))[0], np.nan), np.full(r.FIT_SIZE, np.nan)
     value = project.projection(near_of(points, normals), three(x), rule_of(h, weight, kind, degree), 0, work,
                                coefficients)
     return value, work, coefficients[:r.COEFFICIENTS]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from math import nan
+from math import inf, nan
 
 import numpy as np
 
 from jaart.core.kernels import records as r
+from jaart.core.kernels.blocks import VECTOR
 from jaart.core.kernels.jit import kernel
 from jaart.core.kernels.near import point
 from jaart.core.kernels.normals import Normal, covariance_normal, surfel_normal
@@ -17,22 +18,71 @@ from jaart.core.kernels.tangent import no_value
 from jaart.core.kernels.vectors import frame, scaled
 from jaart.core.kernels.weigh import weigh
 
+_ONE: Unsigned = np.uint64(1)
 _TWO: Unsigned = np.uint64(2)
 _THREE: Unsigned = np.uint64(3)
+#: Columns that a fit takes; behind them the weights at x, those at a foot point, two columns each, and the numbers of
+#: the surfels with a weight.
+WEIGHTS: Unsigned = np.uint64(20)
+FOOT_WEIGHTS: Unsigned = np.uint64(22)
+_WHICH: Unsigned = np.uint64(24)
 _NOTHING = (nan, nan, nan)
 
 
+@kernel(inline=True)
+def whole_vectors(size: Unsigned) -> Unsigned:
+    """How long columns of so many rows are that are filled up to whole vectors."""
+    return (size + np.uint64(VECTOR - 1)) // np.uint64(VECTOR) * np.uint64(VECTOR)
+
+
 @kernel()
-def write_places(near: Near, x: Vector, n: Vector, per_h: float, work: Array) -> None:
-    """Write u, v and height of every surfel above the plane through x with normal n, in h, as three columns."""
+def with_weight(w: Array, size: Unsigned, which: Array) -> Unsigned:
+    """Write the numbers of the surfels that have a weight; returns how many there are."""
+    found = np.uint64(0)
+    for i in range(size):  # without a branch, which nobody could foresee
+        which[found] = i
+        found += _ONE if w[i] > 0.0 else np.uint64(0)
+    return found
+
+
+@kernel(inline=True)
+def write_row(near: Near, i: Unsigned, frame_at: tuple[Vector, Vector, Vector, Vector], per_h: float, weight: float,
+              work: Array, to: Unsigned, rows: Unsigned) -> None:
+    """Write u, v and height in h of surfel i, and its weight, into a row of four columns.
+
+    frame_at: origin, the directions of u and v, and the normal.
+    """
+    x, e1, e2, n = frame_at
+    p = point(near, i)
+    qx, qy, qz = (p[0] - x[0]) * per_h, (p[1] - x[1]) * per_h, (p[2] - x[2]) * per_h
+    work[to] = qx * e1[0] + qy * e1[1] + qz * e1[2]
+    work[to + rows] = qx * e2[0] + qy * e2[1] + qz * e2[2]
+    work[to + _TWO * rows] = qx * n[0] + qy * n[1] + qz * n[2]
+    work[to + _THREE * rows] = weight
+
+
+@kernel()
+def fit_above(near: Near, x: Vector, n: Vector, rule: Rule, w: Array, work: Array, coefficients: Array) -> int:
+    """Fit g to the heights of the surfels above the plane through x with normal n; returns its degree, as `fit` does.
+
+    w: weights of the surfels, behind the columns of the fit. Surfels without one take no row; rows of zeros fill the
+    columns up to whole vectors.
+    """
     e1, e2 = frame(n)
-    rows = near.size
-    for i in range(rows):
-        p = point(near, i)
-        qx, qy, qz = (p[0] - x[0]) * per_h, (p[1] - x[1]) * per_h, (p[2] - x[2]) * per_h
-        work[i] = qx * e1[0] + qy * e1[1] + qz * e1[2]
-        work[i + rows] = qx * e2[0] + qy * e2[1] + qz * e2[2]
-        work[i + _TWO * rows] = qx * n[0] + qy * n[1] + qz * n[2]
+    at, per_h, size, which = (x, e1, e2, n), 1.0 / rule.h, near.size, work[_WHICH * whole_vectors(near.size):]
+    if rule.reach < inf or rule.k > 0:
+        size = with_weight(w, near.size, which)
+    rows = whole_vectors(size)
+    if size < near.size:
+        for i in range(size):
+            one = np.uint64(which[i])
+            write_row(near, one, at, per_h, w[one], work, i, rows)
+    else:
+        for i in range(size):
+            write_row(near, i, at, per_h, w[i], work, i, rows)
+    for i in range(size, rows):
+        work[i] = work[i + rows] = work[i + _TWO * rows] = work[i + _THREE * rows] = 0.0
+    return fit(work, rows, rule.degree, rule.patch, coefficients)
 
 
 @kernel()
@@ -48,11 +98,11 @@ def normal_at(near: Near, x: Vector, rule: Rule, s: float, off: Vector, w: Array
 def polynomial(near: Near, x: Vector, rule: Rule, want: int, work: Array, coefficients: Array) -> Value:
     """f(x) = g(0, 0), g fitted to the heights of the surfels above the plane through x with normal n(x) [A 10].
 
-    near: surfels; x: relative to their place's centre; want: unused, no closed form of ∇f; work: scratch of 20
-    numbers a surfel, the weights at x stay in the first of them; coefficients: g's are written there, in h.
+    near: surfels; x: relative to their place's centre; want: unused, no closed form of ∇f; work: scratch of
+    `places`, the weights at x stay in front; coefficients: g's are written there, in h.
     Degree 0 is the tangent surface.
     """
-    w = work[_THREE * near.size:]
+    w = work[WEIGHTS * whole_vectors(near.size):]
     s, shift = weigh(near, x, rule, w)
     if not s > 0.0:
         return no_value(r.FEW_NEIGHBOURS, _NOTHING, s, shift)
@@ -60,8 +110,7 @@ def polynomial(near: Near, x: Vector, rule: Rule, want: int, work: Array, coeffi
     state, n, _ = normal_at(near, x, rule, s, off, w, coefficients)
     if state != r.CONTINUE:
         return no_value(state, off, s, shift)
-    write_places(near, x, n, 1.0 / rule.h, work)
-    degree = fit(work, near.size, rule.degree, rule.patch, coefficients)
+    degree = fit_above(near, x, n, rule, w, work, coefficients)
     if degree < 0:
         return no_value(r.FEW_NEIGHBOURS, off, s, shift)
     for i in range(near.size):

@@ -2,7 +2,8 @@
 
 A system of `rows` equations for `count` unknowns stands in one flat array from `base` on: column after column of
 the matrix, each contiguous so that its loops vectorise, then the right-hand side as one more column. Rows are
-scaled by the square roots of their weights. Numbers are unsigned, so that no index is checked for its sign.
+scaled by the square roots of their weights; rows of zeros change nothing and may fill the columns up to whole vectors,
+for all loops go over whole columns. Numbers are unsigned, so that no index is checked for its sign.
 """
 
 from __future__ import annotations
@@ -38,24 +39,34 @@ def _reflect(work: Array, v: Unsigned, a: Unsigned, size: Unsigned, factor: floa
 
 
 @kernel()
-def factorise(work: Array, base: Unsigned, rows: Unsigned, count: Unsigned) -> None:
+def _copy_from(work: Array, a: Unsigned, first: Unsigned, size: Unsigned, to: Unsigned) -> None:
+    """Copy the values at a, those before the first as 0."""
+    for i in range(size):
+        work[to + i] = work[a + i]
+    for i in range(first):
+        work[to + i] = 0.0
+
+
+@kernel()
+def factorise(work: Array, base: Unsigned, rows: Unsigned, count: Unsigned, v: Unsigned) -> None:
     """Turn a system into R·x = Qᵀb by reflections, R in the upper triangle [Householder 1958].
 
-    rows: at least count. What stood below the triangle is lost. As every column is reflected by those before
-    it only, the first k columns leave the R of the system of k unknowns.
+    rows: at least count; v: where there is room for one more column, the vector that is reflected along. What stood
+    below the triangle is lost. As every column is reflected by those before it only, the first k columns leave the R of
+    the system of k unknowns.
     """
     for k in range(count):
-        pivot = base + k * rows + k
-        size = rows - k
-        length = sqrt(_square(work, pivot, size))
+        column = base + k * rows
+        _copy_from(work, column, k, rows, v)
+        length = sqrt(_square(work, v, rows))
         if length == 0.0:
             continue
-        diagonal = -length if work[pivot] > 0.0 else length
-        work[pivot] -= diagonal
-        factor = -1.0 / (diagonal * work[pivot])
+        diagonal = -length if work[v + k] > 0.0 else length
+        work[v + k] -= diagonal
+        factor = -1.0 / (diagonal * work[v + k])
         for j in range(k + _ONE, count + _ONE):
-            _reflect(work, pivot, base + j * rows + k, size, factor)
-        work[pivot] = diagonal
+            _reflect(work, v, base + j * rows, rows, factor)
+        work[column + k] = diagonal
 
 
 @kernel()
@@ -86,12 +97,13 @@ def substitute(work: Array, base: Unsigned, rows: Unsigned, count: Unsigned, rig
 def solve(work: Array, base: Unsigned, rows: Unsigned, count: Unsigned, x: Array) -> float:
     """Write into x[:count] what minimises |A·x - b|, and return min |R_kk| / max |R_kk|.
 
-    work: A's columns and b, overwritten. Where there are fewer rows than unknowns x is NaN and the ratio 0.
+    work: A's columns and b, overwritten, and room for one more column. Where there are fewer rows than unknowns x is
+    NaN and the ratio 0.
     """
     if rows < count:
         for k in range(count):
             x[k] = nan
         return 0.0
-    factorise(work, base, rows, count)
+    factorise(work, base, rows, count, base + (count + _ONE) * rows)
     substitute(work, base, rows, count, base + count * rows, x)
     return rank_ratio(work, base, rows, count)

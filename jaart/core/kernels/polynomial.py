@@ -90,11 +90,11 @@ def _mean_height(work: Array, rows: Unsigned) -> float:
 def fit(work: Array, rows: Unsigned, degree: int, patch: float, coefficients: Array) -> int:
     """Write g's coefficients into (15,), 0 beyond its degree, and return its degree, which may be lower.
 
-    work: flat, at least SCRATCH_COLUMNS·rows long, the first four columns of `rows` values u, v, height and
-    weight; the rest is overwritten. patch: 0 when the polynomial is to pass through the points; else each stands
-    for a patch of the surface with this variance along u and along v, and the polynomial's mean over it is to. The
-    degree is lowered until 1.5 points a coefficient have weight and no column depends on others; degree 0 is the
-    weighted mean. -1 and NaN where no point has weight.
+    work: flat, at least SCRATCH_COLUMNS·rows long, the first four columns of `rows` values u, v, height and weight; u
+    and the rest are overwritten; rows of zeros may fill the columns up. patch: 0 when the polynomial is to pass through
+    the points; else each stands for a patch of the surface with this variance along u and along v, and the polynomial's
+    mean over it is to. The degree is lowered until 1.5 points a coefficient have weight and no column depends on
+    others; degree 0 is the weighted mean. -1 and NaN where no point has weight.
     """
     for k in range(COEFFICIENTS):
         coefficients[k] = 0.0
@@ -108,7 +108,7 @@ def fit(work: Array, rows: Unsigned, degree: int, patch: float, coefficients: Ar
         _write_system(work, rows, degree, largest, patch)
         first, count = _FOUR * rows, np.uint64(terms(degree))
         right = first + count * rows
-        factorise(work, first, rows, count)
+        factorise(work, first, rows, count, np.uint64(0))  # u is in the system by now
         while degree > 0 and rank_ratio(work, first, rows, np.uint64(terms(degree))) < _SINGULAR:
             degree -= 1
         substitute(work, first, rows, np.uint64(terms(degree)), right, coefficients)

@@ -8,22 +8,16 @@ from __future__ import annotations
 
 from math import nan
 
-import numpy as np
-
 from jaart.core.kernels import records as r
-from jaart.core.kernels.fitted import normal_at, write_places
+from jaart.core.kernels.fitted import FOOT_WEIGHTS, WEIGHTS, fit_above, normal_at, whole_vectors
 from jaart.core.kernels.jit import kernel
-from jaart.core.kernels.polynomial import fit
-from jaart.core.kernels.records import Array, Near, Rule, Unsigned, Value, Vector
+from jaart.core.kernels.records import Array, Near, Rule, Value, Vector
 from jaart.core.kernels.reference_plane import reference_plane
 from jaart.core.kernels.sums import offset_sums
 from jaart.core.kernels.tangent import no_value
 from jaart.core.kernels.vectors import along, dot, scaled
 from jaart.core.kernels.weigh import weigh
 
-_THREE: Unsigned = np.uint64(3)
-#: Columns that a fit takes; behind them the weights at x are kept.
-_FIT_COLUMNS: Unsigned = np.uint64(20)
 _NOTHING = (nan, nan, nan)
 
 
@@ -31,12 +25,13 @@ _NOTHING = (nan, nan, nan)
 def projection(near: Near, x: Vector, rule: Rule, want: int, work: Array, coefficients: Array) -> Value:
     """f(x) = t + g(0, 0), g fitted over the reference plane of x [T 2.8-2.11].
 
-    near: surfels; x: relative to their place's centre; want: unused, no closed form of ∇f; work: scratch of 22 numbers
-    a surfel, the weights at x stay in the first of them; coefficients: (15,), g's are written there, in h, its heights
+    near: surfels; x: relative to their place's centre; want: unused, no closed form of ∇f; work: scratch of `places`,
+    the weights at x stay in front; coefficients: (15,), g's are written there, in h, its heights
     counted from x. n is the plane's normal, on the side of n(x), from which the search for the plane starts; the
     state is UNDEFINED_NORMAL where there is no plane near it.
     """
-    kept, w = work[_FIT_COLUMNS * near.size:], work[_THREE * near.size:]
+    wide = whole_vectors(near.size)
+    kept, w = work[WEIGHTS * wide:], work[FOOT_WEIGHTS * wide:]
     s, shift = weigh(near, x, rule, kept)
     if not s > 0.0:
         return no_value(r.FEW_NEIGHBOURS, _NOTHING, s, shift)
@@ -49,8 +44,7 @@ def projection(near: Near, x: Vector, rule: Rule, want: int, work: Array, coeffi
         return no_value(state, off, s, shift)
     foot = along(x, n, t * rule.h)
     weigh(near, foot, rule, w)
-    write_places(near, foot, n, 1.0 / rule.h, work)
-    degree = fit(work, near.size, rule.degree, rule.patch, coefficients)
+    degree = fit_above(near, foot, n, rule, w, work, coefficients)
     if degree < 0:
         return no_value(r.FEW_NEIGHBOURS, off, s, shift)
     coefficients[0] += t
