@@ -26,6 +26,10 @@ class SettingsError(JaartError):
     """A parameter with a value it cannot take, or one that has no meaning here."""
 
 
+class NoRoom(SettingsError):
+    """What rays ask for does not fit into memory beside what earlier rays of the same scene asked for."""
+
+
 class RayError(JaartError):
     """A ray or a camera that cannot be traced."""
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from jaart.core import memory
 from jaart.core.addresses import address_of
 from jaart.core.bricks import brick_slots, bricks_of, slot_numbers
+from jaart.core.errors import NoRoom
 from jaart.core.kernels import blocks, call, cell_gather, near
 from jaart.core.kernels.guess import GUESS_WIDTH
 from jaart.core.kernels.records import FIT_SIZE, Cell, Sites
@@ -132,10 +133,10 @@ class Places:
                 self._free.append(pool)
 
     def chunk(self, need: int) -> tuple[int, int]:
-        """Address and bytes of one more chunk, which has room for so many. Raises SettingsError where memory ends."""
+        """Address and bytes of one more chunk, which has room for so many. Raises NoRoom where memory ends."""
         made = np.empty(-(-max(need, CHUNK * min(len(self.chunks), LARGER)) // 8))
         with self._lock:
-            memory.check(sum(one.nbytes for one in (*self.chunks, made)), self._what)
+            memory.check(sum(one.nbytes for one in (*self.chunks, made)), self._what, NoRoom)
             self.chunks.append(made)
         return address(made), made.nbytes
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Event
+from typing import Any, TypeVar, cast
 
 from jaart.core import extents, meaning
 from jaart.core.assemble import plan_of
@@ -14,6 +16,7 @@ from jaart.core.cell_table import cell_table
 from jaart.core.chosen import Chosen
 from jaart.core.cloud_surfels import Points, alone, cloud_of, points_of
 from jaart.core.cylinder import cylinder_tracer
+from jaart.core.errors import NoRoom
 from jaart.core.extents import extent, raster
 from jaart.core.groups.surface import MESHES
 from jaart.core.kernels.records import Cells
@@ -25,7 +28,12 @@ from jaart.core.shapes import Solid
 from jaart.core.surfels import Surfels, make_surfels, stretched_shape
 from jaart.core.tracers import LatticeTracer, Tracer, centres_for
 
-__all__ = ["Prepared", "cells", "extent", "levels", "prepared", "raster", "solids", "surfels"]
+__all__ = ["Prepared", "cells", "extent", "levels", "making_room", "prepared", "raster", "solids", "surfels"]
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+#: Stages that hold what was gathered for rays.
+GATHERED = ("cells", "centres", "cloud_tracer")
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,3 +135,19 @@ def prepared(scene: Scene, settings: Settings, cancel: Event | None = None) -> P
     values = meaning.check(scene, settings)
     made = tracer(scene, settings, values, cancel)
     return Prepared(made, lambda: points(scene, settings, values), values, time.perf_counter() - begin)
+
+
+def making_room(work: F) -> F:
+    """A function of a scene that is called once more where memory ends, with nothing kept of what earlier rays asked
+    for: whoever looks at a huge scene from all sides asks for all of it in the end.
+    """
+    @functools.wraps(work)
+    def again(scene: Scene, *args: Any, **named: Any) -> Any:
+        try:
+            return work(scene, *args, **named)
+        except NoRoom:
+            for stage in GATHERED:
+                scene.forget(stage)
+        return work(scene, *args, **named)
+
+    return cast(F, again)

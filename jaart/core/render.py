@@ -37,6 +37,7 @@ FIRST = 2.0
 Size = tuple[int, int]
 
 
+@prepare.making_room
 def render(scene: Scene, settings: Settings | None = None, camera: Camera | None = None,
            size: Size = (512, 512), *, rays: tuple[Array, Array] | None = None, threads: int | None = None,
            progress: Callable[[int, int], None] | None = None, cancel: Event | None = None,

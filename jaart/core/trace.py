@@ -23,6 +23,7 @@ from jaart.core.tracers import OnLattice
 from jaart.core.warm import warm_up
 
 
+@prepare.making_room
 def trace(scene: Scene, settings: Settings, origin: ArrayLike, direction: ArrayLike,
           pixel: tuple[int, int] | None = None) -> Trace:
     """Follow one ray and keep every step; its hit has the same bits as `render` gives it.

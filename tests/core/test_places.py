@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from jaart.core import balls, memory, places, prepare
+from jaart.core import balls, extents, memory, places, prepare
+from jaart.core.camera import Camera
 from jaart.core.errors import SettingsError
 from jaart.core.io import load
 from jaart.core.kernels.blocks import NOWHERE
@@ -21,6 +22,7 @@ from jaart.core.records import Hits
 from jaart.core.render import render
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings, preset
+from jaart.core.trace import trace
 from tests.core.cloud_scenes import fresh
 from tests.core.kernel_calls import asked_cells, near_at, near_of
 
@@ -144,6 +146,26 @@ def test_rays_that_ask_for_more_than_there_is_are_told(name: str, monkeypatch: p
     monkeypatch.setattr(memory, "limit", lambda: 300 << 10)
     with pytest.raises(SettingsError, match=r"needs 1.* MiB of memory, more than the"):
         render(scene, settings, size=SIZE)
+
+
+@pytest.mark.parametrize("name", ["lattice plane", "cloud best", "cloud plane"])
+def test_what_earlier_views_asked_for_is_let_go_where_memory_ends(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, settings = case(name)
+    monkeypatch.setattr(places, "CHUNK", 1 << 14)
+    first = Camera.fit(extents.bounds(scene, settings), size=SIZE)
+    across = tuple(2 * t - e for e, t in zip(first.eye, first.target, strict=True))
+    views = [first, Camera(across, first.target)]
+    apart = [bits(render(case(name)[0], settings, view, SIZE, threads=1)) for view in views]
+    render(scene, settings, first, SIZE, threads=1)
+    before = places_of(sites_of(scene, settings))
+    most = sum(one.nbytes for one in before.chunks) * 5 // 4
+    monkeypatch.setattr(memory, "limit", lambda: most)
+    assert bits(render(scene, settings, views[1], SIZE, threads=1)) == apart[1]
+    assert places_of(sites_of(scene, settings)) is not before
+    assert bits(render(scene, settings, first, SIZE, threads=1)) == apart[0]
+    hit = render(scene, settings, views[1], SIZE, threads=1).hit.argmax()
+    o, d = (a[hit] for a in views[1].rays(SIZE))
+    assert trace(scene, settings, o, d).status == "converged"
 
 
 @pytest.mark.parametrize(("name", "given", "least", "said"), [
