@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 
 os.environ["JAART_CALL_KERNELS"] = "1"  # before any kernel is imported: tests call those that are not entries, too
 
@@ -11,6 +12,9 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's background job ignores it, and so does what it starts
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # The same examples each time: a change that fails was made by a person, not by chance.
 settings.register_profile("jaart", deadline=None, derandomize=True)
