@@ -12,6 +12,7 @@ from jaart.core.kernels.cover import in_question, keep
 from jaart.core.memory import ITEM, check, pieces
 from jaart.core.nearest import nearest_others, tree_over
 from jaart.core.pieces import do_each
+from jaart.core.point_grid import corners
 from jaart.core.scene import Array, Scene, frozen
 from jaart.core.telling import tell
 
@@ -34,7 +35,11 @@ CORE = 0.5
 
 def bounds(scene: Scene) -> tuple[Array, Array]:
     """Lowest and highest corner (3,) of the box around a cloud's points, in its own coordinates."""
-    return scene.once("bounds", (), lambda: corners(_points(scene)))
+    def make() -> tuple[Array, Array]:
+        low, high = corners(_points(scene))
+        return frozen(low), frozen(high)
+
+    return scene.once("bounds", (), make)
 
 
 def diagonal(scene: Scene) -> float:
@@ -194,12 +199,6 @@ def _large_first(radii: Array, points: Array) -> NDArray[np.int64]:
     some = order[tied]
     order[tied] = some[np.lexsort((*points[some].T, -radii[some]))]
     return order
-
-
-def corners(points: Array) -> tuple[Array, Array]:
-    """Lowest and highest corner (3,) of points, each column alone: rows of three numbers make no vectors."""
-    return (frozen(np.array([points[:, axis].min() for axis in range(3)])),
-            frozen(np.array([points[:, axis].max() for axis in range(3)])))
 
 
 def _points(scene: Scene) -> Array:

@@ -12,9 +12,9 @@ from jaart.core import cloud, memory, orient
 from jaart.core.balls import Cloud
 from jaart.core.chosen import Chosen
 from jaart.core.kernels.gather import Grid
-from jaart.core.kernels.grid_sort import number_cells, sort_by_key
 from jaart.core.meaning import estimates_normals
 from jaart.core.memory import COUNTED, check_near
+from jaart.core.point_grid import cell_numbers, corners, order_of
 from jaart.core.scene import Array, Scene
 from jaart.core.settings import Settings
 from jaart.core.tree import ball_tree
@@ -23,8 +23,6 @@ from jaart.core.tree import ball_tree
 MOST_CELLS = 1 << 20
 #: In so many rows of cells points are counted one by one.
 FEW_ROWS = 64
-#: With more cells than so many for each point, points are sorted without counting them cell by cell.
-FEW_KEYS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,18 +118,9 @@ def _reach(scene: Scene, k: int, kept: NDArray[np.int64], radii: Array) -> Array
 
 def _grid(points: Array, normals: Array, edge: float) -> Grid:
     """The points sorted by the cells of a grid, about as wide as a neighbourhood; normals: (N, 3), or (0, 3)."""
-    low, high = (np.array(corner) for corner in cloud.corners(points))
+    low, high = corners(points)
     edge = max(edge, float((high - low).max()) / MOST_CELLS) or 1.0
-    shape, keys = ((high - low) / edge).astype(np.int64) + 1, np.empty(len(points), np.int64)
-    number_cells(points, low, edge, shape, keys)
-    order = _sorted(keys, int(np.prod(shape, dtype=object)))
-    return Grid(low, edge, shape, keys[order], points[order], normals[order] if len(normals) else normals, order)
-
-
-def _sorted(keys: NDArray[np.int64], count: int) -> NDArray[np.int32]:
-    """Numbers of the items by rising key, equal ones as they stand; count: of the keys that there may be."""
-    if count > FEW_KEYS * len(keys):
-        return np.argsort(keys, kind="stable").astype(np.int32)
-    order = np.empty(len(keys), np.int64)
-    sort_by_key(keys, np.zeros(count + 1, np.int64), order)
-    return order.astype(np.int32)
+    keys, shape = cell_numbers(points, low, high, edge)
+    order = order_of(keys, shape)
+    return Grid(low, edge, shape, keys[order], points[order], normals[order] if len(normals) else normals,
+                order.astype(np.int32))

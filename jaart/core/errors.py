@@ -27,7 +27,11 @@ class SettingsError(JaartError):
 
 
 class NoRoom(SettingsError):
-    """What rays ask for does not fit into memory beside what earlier rays of the same scene asked for."""
+    """What rays ask for does not fit into memory. room: where it was to be kept."""
+
+    def __init__(self, message: str, room: object) -> None:
+        super().__init__(message)
+        self.room = room
 
 
 class RayError(JaartError):

@@ -27,6 +27,7 @@ from jaart.core.warm import warm_up
 NAMES = (*ENERGIES, "fill_level")
 
 
+@prepare.making_room
 def isosurface(scene: Scene, settings: Settings | None = None, energy: str | None = None,
                level: float | str | None = None, subdivide: int | None = None, *, direction: ArrayLike | None = None,
                threads: int | None = None, cancel: Event | None = None, progress: Progress | None = None) -> Mesh:

@@ -60,10 +60,15 @@ def words(size: float) -> str:
     return f"{size:.3g} {unit}"
 
 
-def check(needed: float, what: str, error: type[SettingsError] = SettingsError) -> None:
-    """Raise an error where something needs more bytes than it may take."""
+def check(needed: float, what: str) -> None:
+    """Raise SettingsError where something needs more bytes than it may take."""
     if needed > limit():
-        raise error(f"{what}: needs {words(needed)} of memory, more than the {words(limit())} it may take")
+        raise SettingsError(too_much(needed, what))
+
+
+def too_much(needed: float, what: str) -> str:
+    """What to say of something that needs more bytes than it may take."""
+    return f"{what}: needs {words(needed)} of memory, more than the {words(limit())} it may take"
 
 
 def room_for_all(count: int, parts: int) -> bool:

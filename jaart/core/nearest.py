@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from jaart.core.kernels.grid_sort import number_cells, sort_by_key
 from jaart.core.kernels.nearest import Cells, find_nearest
 from jaart.core.pieces import do_each
+from jaart.core.point_grid import cell_numbers, corners, first_and_order
 from jaart.core.scene import Array
 from jaart.core.telling import tell
 
@@ -77,29 +77,20 @@ def tree_over(points: Array) -> cKDTree:
 
 def even_cells(points: Array, k: int) -> Cells | None:
     """The points in a grid in whose neighbouring cells nearly all have k others; None where they lie unevenly."""
-    low = np.array([points[:, axis].min() for axis in range(3)])
-    size = np.array([points[:, axis].max() for axis in range(3)]) - low
-    coarse = float(size.max()) / COARSE
+    low, high = corners(points)
+    coarse = float((high - low).max()) / COARSE
     if not coarse > 0.0:
         return None
-    filled = np.count_nonzero(np.bincount(_keys(points, low, size, coarse)[0], minlength=1))
+    filled = np.count_nonzero(np.bincount(cell_numbers(points, low, high, coarse)[0], minlength=1))
     edge = coarse * float(np.sqrt(A_NEIGHBOUR * k * filled / len(points)))  # as on a surface
-    if float(np.prod(size / edge + 1.0)) > MOST_CELLS * len(points):
+    if float(np.prod((high - low) / edge + 1.0)) > MOST_CELLS * len(points):
         return None
-    keys, shape = _keys(points, low, size, edge)
-    first, order = np.zeros(int(shape.prod()) + 1, np.int64), np.empty(len(points), np.int64)
-    sort_by_key(keys, first, order)
+    keys, shape = cell_numbers(points, low, high, edge)
+    first, order = first_and_order(keys, int(shape.prod()))
     count = np.diff(first)
     if float(np.dot(count, count)) > MOST_BESIDE * k * len(points):
         return None
     return Cells(low, edge, shape, first, points[order], order)
-
-
-def _keys(points: Array, low: Array, size: Array, edge: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Number of the cell, C order, that each point is in, and how many cells there are along each axis."""
-    shape, keys = (size / edge).astype(np.int64) + 1, np.empty(len(points), np.int64)
-    number_cells(points, low, edge, shape, keys)
-    return keys, shape
 
 
 def _made(points: Array, tree: Callable[[], cKDTree] | None) -> cKDTree:

@@ -136,7 +136,9 @@ class Places:
         """Address and bytes of one more chunk, which has room for so many. Raises NoRoom where memory ends."""
         made = np.empty(-(-max(need, CHUNK * min(len(self.chunks), LARGER)) // 8))
         with self._lock:
-            memory.check(sum(one.nbytes for one in (*self.chunks, made)), self._what, NoRoom)
+            size = sum(one.nbytes for one in (*self.chunks, made))
+            if size > memory.limit():
+                raise NoRoom(memory.too_much(size, self._what), self)
             self.chunks.append(made)
         return address(made), made.nbytes
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import time
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Event
@@ -22,6 +23,7 @@ from jaart.core.groups.surface import MESHES
 from jaart.core.kernels.records import Cells
 from jaart.core.mesh_tracer import mesh_tracer
 from jaart.core.model import fill
+from jaart.core.places import Places, places_of
 from jaart.core.scene import Array, Scene, frozen
 from jaart.core.settings import Settings
 from jaart.core.shapes import Solid
@@ -31,9 +33,6 @@ from jaart.core.tracers import LatticeTracer, Tracer, centres_for
 __all__ = ["Prepared", "cells", "extent", "levels", "making_room", "prepared", "raster", "solids", "surfels"]
 
 F = TypeVar("F", bound=Callable[..., Any])
-
-#: Stages that hold what was gathered for rays.
-GATHERED = ("cells", "centres", "cloud_tracer")
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,16 +137,36 @@ def prepared(scene: Scene, settings: Settings, cancel: Event | None = None) -> P
 
 
 def making_room(work: F) -> F:
-    """A function of a scene that is called once more where memory ends, with nothing kept of what earlier rays asked
+    """A function of a scene that is called once more where memory ends, with nothing kept of what earlier calls asked
     for: whoever looks at a huge scene from all sides asks for all of it in the end.
     """
     @functools.wraps(work)
     def again(scene: Scene, *args: Any, **named: Any) -> Any:
+        before = _rooms(scene)
         try:
             return work(scene, *args, **named)
-        except NoRoom:
-            for stage in GATHERED:
-                scene.forget(stage)
+        except NoRoom as error:
+            if error.room not in before.values():  # it was empty: no more will fit next time
+                raise
+            _let_go(scene, error)
+        del before
         return work(scene, *args, **named)
 
     return cast(F, again)
+
+
+def _let_go(scene: Scene, error: NoRoom) -> None:
+    """Free the memory of the room that is full, and not that of one which another picture has made since."""
+    for stage, room in _rooms(scene).items():
+        if room is error.room:
+            scene.forget(stage)
+    scene.forget("centres")
+    error.room = None
+    traceback.clear_frames(error.__traceback__)  # they hold it, too
+
+
+def _rooms(scene: Scene) -> dict[str, Places]:
+    """Where something is kept that rays asked for, by the stages that hold it."""
+    holders = {stage: scene.kept(stage) for stage in ("cells", "cloud_tracer")}
+    rooms = {stage: places_of(holder.sites) for stage, holder in holders.items() if holder is not None}
+    return {stage: room for stage, room in rooms.items() if room.kept.gathered}

@@ -110,6 +110,11 @@ class Scene:
             result: T = kept[1]
             return result
 
+    def kept(self, stage: str) -> Any:
+        """The result of a stage if it is kept, else None."""
+        with self._lock:
+            return self._kept.get(stage, (None, None))[1]
+
     def forget(self, stage: str) -> None:
         """Let go of the result of a stage that nothing needs again."""
         with self._lock:

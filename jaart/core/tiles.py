@@ -58,7 +58,7 @@ def tiles(pixels: Pixels, threads: int = 1, most: int = TILE) -> list[Pixels]:
 def columns_for(count: int) -> Out:
     """Columns for so many rays, each row of which is written when its ray has ended.
 
-    They lie in two pieces, large enough for a system to give them in few, large pages.
+    All but the status lie in two pieces, large enough for a system to give them in few, large pages.
     """
     floats, numbers = np.empty(10 * count), np.empty((8, count), np.int32)
     t, energy, off_centre, gap = floats[:4 * count].reshape(4, count)

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import itertools
+import weakref
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -149,23 +153,47 @@ def test_rays_that_ask_for_more_than_there_is_are_told(name: str, monkeypatch: p
 
 
 @pytest.mark.parametrize("name", ["lattice plane", "cloud best", "cloud plane"])
-def test_what_earlier_views_asked_for_is_let_go_where_memory_ends(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("threads", [1, 2])
+def test_what_earlier_views_asked_for_is_let_go_where_memory_ends(name: str, threads: int,
+                                                                  monkeypatch: pytest.MonkeyPatch) -> None:
     scene, settings = case(name)
     monkeypatch.setattr(places, "CHUNK", 1 << 14)
     first = Camera.fit(extents.bounds(scene, settings), size=SIZE)
     across = tuple(2 * t - e for e, t in zip(first.eye, first.target, strict=True))
     views = [first, Camera(across, first.target)]
-    apart = [bits(render(case(name)[0], settings, view, SIZE, threads=1)) for view in views]
-    render(scene, settings, first, SIZE, threads=1)
-    before = places_of(sites_of(scene, settings))
-    most = sum(one.nbytes for one in before.chunks) * 5 // 4
+    apart = [bits(render(case(name)[0], settings, view, SIZE)) for view in views]
+    render(scene, settings, first, SIZE, threads=threads)
+    kept = places_of(sites_of(scene, settings))
+    before, most = weakref.ref(kept), sum(one.nbytes for one in kept.chunks) * 5 // 4
+    del kept
     monkeypatch.setattr(memory, "limit", lambda: most)
-    assert bits(render(scene, settings, views[1], SIZE, threads=1)) == apart[1]
-    assert places_of(sites_of(scene, settings)) is not before
-    assert bits(render(scene, settings, first, SIZE, threads=1)) == apart[0]
-    hit = render(scene, settings, views[1], SIZE, threads=1).hit.argmax()
+    with uncollected():  # at once: the next would not fit beside it
+        alive: list[bool] = []
+        again = render(scene, settings, views[1], SIZE, threads=threads, picture=lambda _: alive.append(bool(before())))
+    assert bits(again) == apart[1] and alive[0] and not alive[-1] and len(alive) > 1
+    assert bits(render(scene, settings, first, SIZE, threads=threads)) == apart[0]
+    hit = render(scene, settings, views[1], SIZE, threads=threads).hit.argmax()
     o, d = (a[hit] for a in views[1].rays(SIZE))
     assert trace(scene, settings, o, d).status == "converged"
+
+
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """Without the collector of cycles, as in the window."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
+
+
+def test_a_picture_that_is_too_large_by_itself_is_refused_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, settings = case("cloud best")
+    made, seen = places_of(sites_of(scene, settings)), []
+    monkeypatch.setattr(memory, "limit", lambda: 1 << 20)
+    with pytest.raises(SettingsError, match="the neighbourhoods of balls: needs"):
+        render(scene, settings, size=(80, 80), picture=seen.append)
+    assert len(seen) <= 1 and places_of(sites_of(scene, settings)) is made
 
 
 @pytest.mark.parametrize(("name", "given", "least", "said"), [

@@ -124,4 +124,4 @@ class WeightSettings:
     ball_k: int = parameter(
         "integer", 6, low=1, high=100, step=1, group="Weight and area", label="Balls to the k-th neighbour",
         stage="surfels", source="[A §5]", scenes=("cloud",),
-        help="The ball around each point, in which a ray begins its search, reaches to so many neighbours.")
+        help="The balls in which rays search reach to so many neighbours of the point in their middle, or farther.")

@@ -14,10 +14,11 @@ Rows = NDArray[np.int32]
 
 @kernel(STRICT, inline=True)
 def is_held(distance: Array, radii: Array, i: int, at: int, j: int, share: float) -> bool:
-    """Whether ball i holds the core of ball j, its neighbour number at; of those as far as the last, others may be
-    missing, so that none counts.
+    """Whether ball i holds the core of ball j, its neighbour number at. Those as far as the last do not count, for
+    others as far may not be listed, unless all are in one place.
     """
-    return distance[i, at] + share * radii[j] <= radii[i] and distance[i, at] < distance[i, distance.shape[1] - 1]
+    apart = distance[i, at]
+    return apart + share * radii[j] <= radii[i] and (apart < distance[i, distance.shape[1] - 1] or apart == 0.0)
 
 
 @kernel(STRICT, entry=True)
@@ -35,9 +36,9 @@ def keep(distance: Array, index: Rows, radii: Array, order: Ints, rank: Rows, sh
          kept: NDArray[np.bool_]) -> None:
     """Mark the balls that are kept: one that is kept drops later ones whose core it holds.
 
-    A core is the ball of `share` times the radius. distance, index: (N, k) nearest other centres of each ball,
-    rising; radii (N,), at most the distance to the last of them; order: balls in question, the first first; rank (N,):
-    where in it each of them stands; kept (N,): all true.
+    A core is the ball of `share` times the radius. distance, index: (N, k) nearest other centres of each ball, rising;
+    radii (N,): balls beyond those neighbours are kept whatever holds them; order: balls in question, the first first;
+    rank (N,): where in it each of them stands; kept (N,): all true.
     """
     for turn in range(order.shape[0]):
         i = order[turn]

@@ -65,8 +65,8 @@ def write_row(near: Near, i: Unsigned, frame_at: tuple[Vector, Vector, Vector, V
 def fit_above(near: Near, x: Vector, n: Vector, rule: Rule, w: Array, work: Array, coefficients: Array) -> int:
     """Fit g to the heights of the surfels above the plane through x with normal n; returns its degree, as `fit` does.
 
-    w: weights of the surfels, behind the columns of the fit. Surfels without one take no row; rows of zeros fill the
-    columns up to whole vectors.
+    w: weights of the surfels, behind the columns of the fit. Where not all of them count, those without one take no
+    row; rows of zeros fill the columns up to whole vectors.
     """
     e1, e2 = frame(n)
     at, per_h, size, which = (x, e1, e2, n), 1.0 / rule.h, near.size, work[_WHICH * whole_vectors(near.size):]

@@ -13,8 +13,9 @@ from jaart.core.kernels.records import Array, Vector
 
 Ints = NDArray[np.int64]
 Rows = NDArray[np.int32]
-#: A distance counts as found when what was not looked at is farther by this share: cells are rounded.
-_SURE = 1.0 - 1e-9
+#: A distance counts as found when what was not looked at is farther by this share, and by so many edges: cells are
+#: rounded.
+_SURE, _SLACK = 1.0 - 1e-9, 1e-9
 
 
 class Cells(NamedTuple):
@@ -65,8 +66,8 @@ def beyond(cells: Cells, axis: int, at: int, below: float, above: float) -> floa
 
 @kernel(STRICT, inline=True)
 def gap(step: int, below: float, above: float) -> float:
-    """How far x is along an axis from the cells one step aside of its own, in edges."""
-    return 0.0 if step == 0 else (max(below, 0.0) if step < 0 else max(above, 0.0))
+    """How far x is along an axis from the cells one step aside of its own, in edges, at least."""
+    return 0.0 if step == 0 else max((below if step < 0 else above) - _SLACK, 0.0)
 
 
 @kernel(STRICT, entry=True)
@@ -90,7 +91,7 @@ def find_nearest(cells: Cells, begin: int, end: int, distance: Array, index: Row
             i, j = at_i + di, at_j + dj
             if not (0 <= i < cells.shape[0] and 0 <= j < cells.shape[1]):
                 continue
-            dx, dy = gap(di, x_below, x_above) * _SURE * cells.edge, gap(dj, y_below, y_above) * _SURE * cells.edge
+            dx, dy = gap(di, x_below, x_above) * cells.edge, gap(dj, y_below, y_above) * cells.edge
             if dx * dx + dy * dy >= distance[row, k - 1]:
                 continue
             cell = (i * cells.shape[1] + j) * cells.shape[2]
