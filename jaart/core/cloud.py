@@ -156,11 +156,14 @@ def ball_radii(scene: Scene, ball_k: int) -> Array:
     return scene.once("ball_radii", ball_k, make)
 
 
-def growth(k: int) -> float:
-    """How much a ball to the k-th neighbour grows: on a surface it holds twice as many where its square is twice as
-    large.
+def grown_radii(radii: Array, k: int) -> Array:
+    """Radii (N,) of balls that reached to the k-th neighbour, grown; those of outliers as they are.
+
+    On a surface a ball holds twice as many points where its square is twice as large. What a far point's ball held, if
+    it grew, might be the whole scene.
     """
-    return min(max(math.sqrt(FILLED / max(k, 1)), 1.0), GROWN)
+    by = min(max(math.sqrt(FILLED / max(k, 1)), 1.0), GROWN)
+    return radii * np.where(radii <= OUTLIER * np.median(radii), by, 1.0)
 
 
 def cover(scene: Scene, ball_k: int) -> tuple[NDArray[np.int64], Array]:
@@ -173,15 +176,15 @@ def cover(scene: Scene, ball_k: int) -> tuple[NDArray[np.int64], Array]:
     """
     def make() -> tuple[NDArray[np.int64], Array]:
         distance, index = nearest(scene, ball_k)
-        by = growth(index.shape[1])
-        grown, share = by * ball_radii(scene, ball_k), CORE / by
+        radii = ball_radii(scene, ball_k)
+        grown, cores = grown_radii(radii, index.shape[1]), CORE * radii
         asked, kept = np.zeros(len(index), bool), np.ones(len(index), bool)
-        in_question(distance, index, grown, share, asked)
+        in_question(distance, index, grown, cores, asked)
         some = np.flatnonzero(asked)
         order = some[_large_first(grown[some], local_points(scene)[some])]
         rank = np.empty(len(index), np.int32)
         rank[order] = np.arange(len(order))
-        keep(distance, index, grown, order, rank, share, kept)
+        keep(distance, index, grown, cores, order, rank, kept)
         if ball_k == DENSITY_K:
             _density(scene)
         scene.forget("nearest")  # all that is asked of it is known

@@ -137,12 +137,26 @@ def test_balls_and_their_cover_hold_the_surface(make) -> None:
 def test_the_core_of_a_ball_left_out_lies_in_one_that_is_kept() -> None:
     scene = of(jittered(3000))
     radii, (kept, grown) = cloud.ball_radii(scene, 6), cloud.cover(scene, 6)
-    assert np.array_equal(grown, cloud.growth(6) * radii[kept])
+    assert np.array_equal(grown, cloud.grown_radii(radii, 6)[kept])
     left_out = np.setdiff1d(np.arange(3000), kept)
     assert 2000 < len(left_out) < 2500
     apart = np.linalg.norm(scene.points[left_out, None] - scene.points[kept], axis=2)
     inside = apart + cloud.CORE * radii[left_out, None] <= grown * (1 + 1e-12)
     assert (inside & (radii[kept] >= radii[left_out, None])).any(axis=1).all()
+
+
+def test_balls_grow_to_about_fourteen_neighbours_but_not_around_outliers() -> None:
+    radii = np.array([1.0, 1.0, 1.2, 30.0])
+    assert cloud.grown_radii(radii, 6).tolist() == [1.5, 1.5, 1.5 * 1.2, 30.0]
+    assert np.allclose(cloud.grown_radii(radii[:3], 10), radii[:3] * math.sqrt(1.35), rtol=1e-15)
+    assert cloud.grown_radii(radii, 14).tolist() == radii.tolist()
+    assert cloud.grown_radii(radii, 1)[0] == 1.5
+
+
+def test_points_in_one_place_share_a_ball() -> None:
+    scene = of(np.repeat(jittered(300), 8, axis=0))
+    kept, _ = cloud.cover(scene, 6)
+    assert len(kept) <= 2 * 300
 
 
 @pytest.mark.parametrize("ball_k", [6, 20])

@@ -153,26 +153,24 @@ def test_rays_that_ask_for_more_than_there_is_are_told(name: str, monkeypatch: p
 
 
 @pytest.mark.parametrize("name", ["lattice plane", "cloud best", "cloud plane"])
-@pytest.mark.parametrize("threads", [1, 2])
-def test_what_earlier_views_asked_for_is_let_go_where_memory_ends(name: str, threads: int,
-                                                                  monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_earlier_views_asked_for_is_let_go_where_memory_ends(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene, settings = case(name)
     monkeypatch.setattr(places, "CHUNK", 1 << 14)
     first = Camera.fit(extents.bounds(scene, settings), size=SIZE)
     across = tuple(2 * t - e for e, t in zip(first.eye, first.target, strict=True))
     views = [first, Camera(across, first.target)]
-    apart = [bits(render(case(name)[0], settings, view, SIZE)) for view in views]
-    render(scene, settings, first, SIZE, threads=threads)
+    apart = [bits(render(case(name)[0], settings, view, SIZE, threads=1)) for view in views]
+    render(scene, settings, first, SIZE, threads=1)
     kept = places_of(sites_of(scene, settings))
     before, most = weakref.ref(kept), sum(one.nbytes for one in kept.chunks) * 5 // 4
     del kept
     monkeypatch.setattr(memory, "limit", lambda: most)
     with uncollected():  # at once: the next would not fit beside it
         alive: list[bool] = []
-        again = render(scene, settings, views[1], SIZE, threads=threads, picture=lambda _: alive.append(bool(before())))
+        again = render(scene, settings, views[1], SIZE, threads=1, picture=lambda _: alive.append(bool(before())))
     assert bits(again) == apart[1] and alive[0] and not alive[-1] and len(alive) > 1
-    assert bits(render(scene, settings, first, SIZE, threads=threads)) == apart[0]
-    hit = render(scene, settings, views[1], SIZE, threads=threads).hit.argmax()
+    assert bits(render(scene, settings, first, SIZE, threads=1)) == apart[0]
+    hit = render(scene, settings, views[1], SIZE, threads=1).hit.argmax()
     o, d = (a[hit] for a in views[1].rays(SIZE))
     assert trace(scene, settings, o, d).status == "converged"
 
