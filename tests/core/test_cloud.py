@@ -145,12 +145,12 @@ def test_the_core_of_a_ball_left_out_lies_in_one_that_is_kept() -> None:
     assert (inside & (radii[kept] >= radii[left_out, None])).any(axis=1).all()
 
 
-def test_balls_grow_to_about_fourteen_neighbours_but_not_around_outliers() -> None:
-    radii = np.array([1.0, 1.0, 1.2, 30.0])
-    assert cloud.grown_radii(radii, 6).tolist() == [1.5, 1.5, 1.5 * 1.2, 30.0]
-    assert np.allclose(cloud.grown_radii(radii[:3], 10), radii[:3] * math.sqrt(1.35), rtol=1e-15)
-    assert cloud.grown_radii(radii, 14).tolist() == radii.tolist()
-    assert cloud.grown_radii(radii, 1)[0] == 1.5
+def test_balls_grow_to_about_ten_neighbours_but_not_around_outliers() -> None:
+    radii = np.array([1.0, 1.0, 2.0, 30.0])
+    assert cloud.grown_radii(radii, 6) == pytest.approx([1.3, 1.3, 2.6, 30.0], rel=1e-12)
+    assert cloud.grown_radii(radii[:3], 8) == pytest.approx(radii[:3] * math.sqrt(10.14 / 8), rel=1e-12)
+    assert cloud.grown_radii(radii, 11).tolist() == radii.tolist()
+    assert cloud.grown_radii(radii, 1)[0] == 1.3
 
 
 def test_points_in_one_place_share_a_ball() -> None:
@@ -173,4 +173,4 @@ def test_measured_clouds(data) -> None:
     kinect = load(data("clouds/kinect_table_241407.npz"))
     assert np.array_equal(cloud.local_points(kinect) + cloud.offset(kinect), kinect.points)
     assert 0.0017 < cloud.spacing(kinect) < 0.0019
-    assert 0.2 < len(cloud.cover(kinect, 6)[0]) / len(kinect.points) < 0.3
+    assert 0.25 < len(cloud.cover(kinect, 6)[0]) / len(kinect.points) < 0.35

@@ -91,7 +91,7 @@ def test_curves_are_not_drawn_where_nothing_is_known(cloud):
 
 
 def test_lengths_have_digits_that_count(ray):
-    assert scale.text(ray, 1.23456789, 4) == "1.234568"
+    assert scale.text(ray, 1.23456789, 4) == "1.2345679"
     assert scale.step_text(ray, 1.23456e-7, 4, "+") == "+1.23e-07"
 
 

@@ -124,5 +124,5 @@ class WeightSettings:
     ball_k: int = parameter(
         "integer", 6, low=1, high=100, step=1, group="Weight and area", label="Balls to the k-th neighbour",
         stage="surfels", source="[A §5]", scenes=("cloud",),
-        help="The balls in which rays search reach to so many neighbours; below 14 they grow towards as many, so that "
+        help="The balls in which rays search reach to so many neighbours; below 11 they grow towards as many, so that "
              "fewer of them cover the points.")
