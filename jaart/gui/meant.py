@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 from jaart.core.errors import SettingsError
 from jaart.core.parameter import Length
 from jaart.core.settings import PARAMETERS, Settings
+from jaart.gui.values import unit_in
 
 if TYPE_CHECKING:
+    from jaart.core.chosen import Chosen
     from jaart.core.scene import Scene
     from jaart.gui.model import SceneModel
     from jaart.gui.tasks import Known
@@ -32,8 +34,16 @@ def meant(name: str, model: SceneModel) -> Any:
         return None
     if about.kind == "choice":
         return _of_auto(name, scene, model.settings) if "auto" in about.choices else None
-    value = getattr(model.known.values, _CALLED.get(name, name), None)
+    value = _step(model.known.values, model) if name == "step" else \
+        getattr(model.known.values, _CALLED.get(name, name), None)
     return _length(about.name, value, model.known, model.kind) if isinstance(value, float) else value
+
+
+def _step(values: Chosen, model: SceneModel) -> float:
+    """The step as it is typed: that of march in h for a cloud, in cells otherwise; without march the stride."""
+    if model.settings.search != "march":
+        return values.stride
+    return values.step / values.h if unit_in(PARAMETERS["step"], model.kind) == "h" else values.step
 
 
 def _of_auto(name: str, scene: Scene, settings: Settings) -> str:

@@ -166,6 +166,14 @@ def test_auto_of_the_search_follows_the_method(qtbot, form, model, standard):
     qtbot.waitUntil(lambda: combo.itemText(combo.findData("auto")) == "auto: minimise", timeout=PATIENCE)
 
 
+@pytest.mark.parametrize(("search", "shown"), [("secant", "1"), ("march", "0.2")])
+def test_the_step_on_auto_is_that_of_whatever_steps(qtbot, form, model, standard, search, shown):
+    choose(form.rows["traversal"].combo, "uniform")
+    choose(form.rows["search"].combo, search)
+    qtbot.waitUntil(lambda: form.rows["step"].box.text() == shown, timeout=PATIENCE)
+    assert form.rows["step"].label.text() == "Step [cells]"
+
+
 def test_the_chosen_preset_stays_chosen(form, model):
     assert form.presets.currentText() == "best"
     model.set_value("h", 1.0)
