@@ -101,6 +101,14 @@ def explained(scene: Scene, settings: Settings) -> dict[str, Explained]:
         "tolerance": _tolerance(scene, settings, h, radius)}
 
 
+def of_auto(scene: Scene, settings: Settings, name: str) -> str:
+    """What a choice would come to in a scene, beside the other settings, were it left to the program."""
+    left = settings.replace(**{name: "auto"})
+    word: str = {"search": lambda: _search(left), "normal": lambda: _normal(scene, left),
+                 "neighbourhood": lambda: _neighbourhood(scene, left)}[name]()[0]
+    return word
+
+
 def _strides(settings: Settings, h: float, lattice: bool) -> dict[str, Explained]:
     """The steps of march and of the uniform traversal."""
     if isinstance(settings.step, str):

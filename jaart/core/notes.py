@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from jaart.core import cloud, extents, prepare
-from jaart.core.chosen import Chosen, arrival, chosen, counts_nearest, tolerance_unit
+from jaart.core.chosen import Chosen, arrival, chosen, counts_nearest, explained, tolerance_unit
 from jaart.core.cloud_surfels import Points
 from jaart.core.collapse import collapsing
 from jaart.core.groups.surface import evaluates
@@ -57,11 +57,21 @@ def _without_normal(scene: Scene, hits: Hits) -> tuple[str, ...]:
     without = counts.get("undefined_normal", 0)
     if 2 * without <= near:
         return ()
-    own = scene.kind != "cloud" or scene.normals is not None
-    surfel = own and chosen(scene, hits.settings).normal == "surfel"
-    why = "normals that cancel each other out have no average" if surfel else \
-        "points along a line or in one place have no surface"
-    return (f"no normal is defined for {without} of the {near} rays that came near: {why}",)
+    return (f"no normal is defined for {without} of the {near} rays that came near: "
+            f"{_why_no_normal(scene, hits.settings)}",)
+
+
+def _why_no_normal(scene: Scene, settings: Settings) -> str:
+    """What keeps a normal from being defined: no sheet of points, or too few of them within the radius."""
+    origins = explained(scene, settings)
+    (normal, _), (radius, origin) = origins["normal"], origins["radius"]
+    if normal == "surfel" and (scene.kind != "cloud" or scene.normals is not None):
+        return "normals that cancel each other out have no average"
+    spacing = cloud.spacing(scene) if scene.kind == "cloud" else 1.0
+    if radius < spacing:
+        return (f"radius = {radius:.4g} ({origin}) holds too few points for a surface, as they lie {spacing:.4g} apart "
+                "on average; expected a larger one")
+    return "points along a line or in one place have no surface"
 
 
 def _neighbours(scene: Scene, settings: Settings, values: Chosen, count: int) -> tuple[str, ...]:

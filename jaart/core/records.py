@@ -31,9 +31,10 @@ class Hits:
 
     origin, direction: (R, 3); t: distance along the unit direction, NaN = no hit; point, normal: (R, 3),
     NaN = no hit; energy: length of the last step |e_ts| [T 2.20]; off_centre: |a(x) - x| [T 2.22];
-    iterations: steps of the last start; evaluations: steps of all starts; neighbours: surfels summed
-    over the evaluations; cells: cells or balls visited (skipped ones are not); lowered: evaluations whose
-    polynomial has fewer degrees than asked for; gap: (λ1 - λ0)/λ2 of a hit where min_gap asks for it, else NaN;
+    iterations: steps of the start that hit, of the last one without a hit; evaluations: of all starts, one or
+    more a step; neighbours: surfels summed over the evaluations; cells: cells or balls visited (skipped ones are
+    not); lowered: evaluations whose polynomial has fewer degrees than asked for; gap: (λ1 - λ0)/λ2 of a hit where
+    min_gap asks for it, else NaN;
     status: index into STATUS_NAMES; starts: searches begun; eigenvectors: of covariances, for n(x); gradients: passes
     over the surfels for ∇f in closed form.
     size: (width, height) of a picture, row by row from the top, None for a list of rays.

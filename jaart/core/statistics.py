@@ -43,8 +43,8 @@ class Histogram:
 class Statistics:
     """One picture in numbers.
 
-    rays, hits: counts; status: rays by end state; iterations: steps of the last start, of the rays
-    that hit; evaluations: steps of all starts, of the rays that evaluated anything; cells: cells
+    rays, hits: counts; status: rays by end state; iterations: steps of the start that hit, of the rays
+    that hit; evaluations: of all starts, of the rays that evaluated anything; cells: cells
     or balls visited, of the rays that visited any; neighbours: surfels an evaluation, on average (NaN without
     one); prep_s, ray_s: wall seconds; quality: errors against the exact surface if known; lowered: evaluations whose
     polynomial has fewer degrees than asked for; starts, eigenvectors, gradients, gathered, fits: as of Hits, summed.

@@ -13,6 +13,7 @@ from jaart.core.records import Hits, Quality
 from jaart.core.settings import PARAMETERS, Settings
 from jaart.gui import navigation, overlay, theme
 from jaart.gui.model import SceneModel
+from jaart.gui.status import at_rest
 
 #: Degrees that a drag across the view turns the scene.
 TURN = 240.0
@@ -143,7 +144,11 @@ class ImageView(QWidget):
         return self._scaled[1]
 
     def _nothing(self) -> str:
-        return "Drop a file here, or open one" if self.model.idle else "The first picture is being made …"
+        if self.model.computing:
+            return "The first picture is being made …"
+        if self.model.scene is None:
+            return "Drop a file here, or open one"
+        return at_rest(self.model) or "There is no picture with these settings"
 
     def _paint_over(self, painter: QPainter) -> None:
         model, hits = self.model, self.model.hits

@@ -105,14 +105,15 @@ class MainWindow(QMainWindow):
         self.model.theme_changed.connect(self._show_theme)
         self.model.scene_changed.connect(self._show_title)
         self.model.hits_changed.connect(self._load_panels)
+        self.model.settled.connect(self._load_panels)
         self.model.failed.connect(self.loader.start)
         self.loader.ready.connect(self._build)
         self.loader.failed.connect(self.model.failed)
         self.loader.finished.connect(self._built)
 
     def _load_panels(self) -> None:
-        """Import the rest once the first picture stands: before, it would only slow it down."""
-        if self.model.complete:
+        """Import the rest once the first picture stands or was stopped: before, it would only slow it down."""
+        if self.model.complete or (self.model.halted and not self.model.computing):
             self.loader.start()
 
     def _build(self, late: Late) -> None:

@@ -77,11 +77,11 @@ class Status(QStatusBar):
         self._late.stop()
         self._stage = "", 0.0
         self.bar.hide()
-        self.state.setText(_at_rest(self.model))
+        self.state.setText(at_rest(self.model))
         self.refresh()
 
 
-def _at_rest(model: SceneModel) -> str:
+def at_rest(model: SceneModel) -> str:
     """What is shown while nothing is computed."""
     if model.halted:
         shown = "" if model.hits is None else ": this is the picture before" if model.complete else ": a coarse picture"

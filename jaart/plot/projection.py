@@ -94,14 +94,14 @@ def _cells(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> 
 
 
 def _balls(axes: Axes, trace: Trace, step: int, flat: Plane, colours: Theme) -> None:
-    """The balls as the plane cuts them; those that hold the query stand out."""
+    """The balls as the plane cuts them; the one that the search is in stands out, as many may hold the query."""
     from matplotlib.collections import EllipseCollection
 
     centres, radii = trace.balls[:, :3], trace.balls[:, 3]
     cut = np.sqrt(np.maximum(radii**2 - flat.heights(centres)**2, 0.0))
-    holding = np.linalg.norm(centres - trace.query[step], axis=1) <= radii
+    own = scale.own_ball(trace, step)
     for full in (False, True):
-        shown = (cut > 0) & (holding == full)
+        shown = (cut > 0) & (own == full)
         across = 2 * cut[shown]
         axes.add_collection(EllipseCollection(
             across, across, np.zeros(len(across)), units="xy", offsets=flat.coordinates(centres[shown]).reshape(-1, 2),

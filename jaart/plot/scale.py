@@ -47,6 +47,12 @@ def step_text(trace: Trace, length: float, places: int = 4, sign: str = "") -> s
     return f"{length:{sign}.3g}" if is_cloud(trace) else text(trace, length, places, sign)
 
 
+def own_ball(trace: Trace, step: int) -> NDArray[np.bool_]:
+    """Which of a cloud's balls (B,) the search of a step is in: one, or none where the ray does not pierce it."""
+    own: NDArray[np.bool_] = np.arange(len(trace.balls)) == trace.step_cell[step, 0]
+    return own
+
+
 def stretches(trace: Trace) -> Array:
     """Where the ray enters and leaves each cell or ball (N, 2), t along it."""
     if not is_cloud(trace):

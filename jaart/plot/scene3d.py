@@ -90,10 +90,11 @@ def _cells(trace: Trace, low: float, high: float, colours: Theme) -> dict[str, M
 
 
 def _balls(trace: Trace, step: int, colours: Theme) -> dict[str, Mesh]:
-    """Balls that hold the query, or the next point, as three circles each; the query's stand out."""
+    """Balls that hold the query, or the next point, as three circles each; the one that is searched stands out."""
     centres, radii = trace.balls[:, :3], trace.balls[:, 3]
     holds, leads = (np.linalg.norm(centres - x, axis=1) <= radii for x in (trace.query[step], trace.next_point[step]))
-    parts = (("cells", leads & ~holds, colours.cell), ("full_cells", holds, colours.full_cell))
+    own = scale.own_ball(trace, step)
+    parts = (("cells", (holds | leads) & ~own, colours.cell), ("full_cells", own, colours.full_cell))
     return {name: copies(glyphs.rings(48), centres[chosen], np.tile([0.0, 0.0, 1.0], (int(chosen.sum()), 1)),
                          radii[chosen], rgb(colour)) for name, chosen, colour in parts}
 

@@ -131,3 +131,20 @@ def test_files_and_statistics_hold_them() -> None:
         np.testing.assert_array_equal(arrays[name], getattr(found, name))
         assert getattr(counted, name) == getattr(found, name).sum() > 0
     assert (arrays["gathered"], arrays["fits"]) == (counted.gathered, 0) and counted.gathered > 0
+
+
+@pytest.mark.parametrize(("search", "more"),
+                         [("iterate", 0), ("secant", 0), ("minimise", 1), ("march", 2), ("safe", 2)])
+def test_iterations_are_the_steps_of_the_start_that_hit_and_evaluations_those_of_all(search: str, more: int) -> None:
+    settings, scene = Settings(search=search, method="off_centre" if search == "minimise" else "tangent"), cloud()
+    found, later = render(scene, settings, size=(12, 12)), 0
+    for i in np.flatnonzero(found.hit):
+        ray = trace(scene, settings, found.origin[i], found.direction[i])
+        arrived = [s for s in np.unique(ray.start)
+                   if ray.outcome[np.flatnonzero(ray.start == s)[-1]].startswith(("converged", "floor", "bounded"))]
+        steps = [int(np.count_nonzero(ray.start == s)) for s in arrived]
+        assert found.iterations[i] in steps
+        assert ray.steps <= found.evaluations[i] <= ray.steps + more * len(arrived)
+        assert (found.evaluations[i] > ray.steps) == (more > 0)
+        later += found.iterations[i] != np.count_nonzero(ray.start == ray.start[-1])
+    assert later or not more

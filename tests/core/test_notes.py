@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from jaart.core import prepare
+from jaart.core import cloud, prepare
 from jaart.core.errors import SettingsError
 from jaart.core.io import load
 from jaart.core.notes import notes, of_hits
@@ -171,6 +171,16 @@ def test_rays_that_meet_no_normal_are_counted() -> None:
                                     "in one place have no surface",)
     away = render(line, Settings(h=0.5), rays=(ways + 50, ways))
     assert away.counts() == {"background": 12} and of_hits(line, away) == ()
+
+
+@pytest.mark.parametrize(("settings", "origin"), [
+    (Settings(radius=0.001), "0.001 (as set)"), (Settings(h=0.0002), "0.0008 (4 h)"),
+    (Settings(radius="0.1s"), " (0.1 of the spacing, as set)")], ids=["radius", "h", "spacings"])
+def test_a_radius_below_the_spacing_is_named_where_normals_are_undefined(settings: Settings, origin: str) -> None:
+    bumpy = load("bumpy")
+    (said,) = of_hits(bumpy, render(bumpy, settings.replace(normal="covariance"), size=(24, 24)))
+    assert f"{origin} holds too few points for a surface, as they lie {cloud.spacing(bumpy):.4g} apart" in said
+    assert ": radius = " in said
 
 
 def test_normals_that_cancel_out_are_told_from_points_without_a_surface() -> None:

@@ -34,17 +34,23 @@ def standard(qtbot, model):
 
 
 @pytest.fixture
-def window(qtbot):
-    """The window with the standard scene, all panels built."""
+def bare(qtbot):
+    """The window without a scene."""
     window = MainWindow()
     window.model.set_size(192, 192)
     window.show()
     qtbot.waitExposed(window)
-    window.model.open("standard")
-    qtbot.waitUntil(lambda: window.model.idle and window.panels_ready, timeout=PATIENCE)
     yield window
     window.close()
     forget(window)
+
+
+@pytest.fixture
+def window(qtbot, bare):
+    """The window with the standard scene, all panels built."""
+    bare.model.open("standard")
+    qtbot.waitUntil(lambda: bare.model.idle and bare.panels_ready, timeout=PATIENCE)
+    return bare
 
 
 def forget(thing):

@@ -109,6 +109,22 @@ def test_auto_shows_a_cloud_its_length_in_spacings_and_the_slider_takes_it(qtbot
     assert model.hits.settings.h == model.settings.h
 
 
+def test_the_step_of_march_is_shown_and_taken_in_the_unit_of_its_label(qtbot, window):
+    model, form = window.model, window.docks["Parameters"].panel
+    model.open("bumpy")
+    settle(qtbot, model)
+    row = form.rows["step"]
+    choose(form.rows["search"].combo, "march")
+    settle(qtbot, model)
+    before = model.hits.evaluations
+    assert row.label.text() == "Step [h]"
+    assert row.box.text() == "0.25"
+    choose(row.word, "value")
+    assert model.settings.step == 0.25
+    settle(qtbot, model)
+    assert (model.hits.evaluations == before).all()
+
+
 def test_settings_that_do_not_suit_a_cloud_are_put_back_and_named(qtbot, standard, tmp_path):
     standard.set_settings(standard.settings.replace(neighbourhood="cell_knn", h=1.2, degree=3, raster=8))
     lines = said(standard)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from patience import choose, settle
+from patience import PATIENCE, choose, settle
 from qtpy.QtCore import Qt
 from qtpy.QtTest import QTest
 from qtpy.QtWidgets import QToolButton
@@ -144,6 +144,34 @@ def test_typing_or_dragging_takes_the_place_of_a_word(form, model, standard):
 def test_a_list_says_what_auto_stands_for(qtbot, form, model, standard):
     assert form.rows["normal"].combo.currentText() == "auto: surfel"
     assert form.rows["normal"].combo.currentData() == "auto"
+
+
+@pytest.mark.parametrize(("name", "others", "auto"), [
+    ("search", ("secant", "march", "iterate"), "auto: iterate"), ("normal", ("covariance",), "auto: surfel"),
+    ("neighbourhood", ("ball", "knn"), "auto: cell_ball")])
+def test_a_list_says_what_auto_would_come_to_whatever_is_chosen(qtbot, form, model, standard, name, others, auto):
+    combo = form.rows[name].combo
+    for other in others:
+        choose(combo, other)
+        settle(qtbot, model)
+        assert combo.itemText(combo.findData("auto")) == auto
+    choose(combo, auto)
+    settle(qtbot, model)
+    assert getattr(model.known.values, name) == auto.removeprefix("auto: ")
+
+
+def test_auto_of_the_search_follows_the_method(qtbot, form, model, standard):
+    choose(form.rows["method"].combo, "off_centre")
+    combo = form.rows["search"].combo
+    qtbot.waitUntil(lambda: combo.itemText(combo.findData("auto")) == "auto: minimise", timeout=PATIENCE)
+
+
+@pytest.mark.parametrize(("search", "shown"), [("secant", "1"), ("march", "0.2")])
+def test_the_step_on_auto_is_that_of_whatever_steps(qtbot, form, model, standard, search, shown):
+    choose(form.rows["traversal"].combo, "uniform")
+    choose(form.rows["search"].combo, search)
+    qtbot.waitUntil(lambda: form.rows["step"].box.text() == shown, timeout=PATIENCE)
+    assert form.rows["step"].label.text() == "Step [cells]"
 
 
 def test_the_chosen_preset_stays_chosen(form, model):

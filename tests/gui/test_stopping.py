@@ -124,6 +124,32 @@ def test_a_stopped_picture_is_called_so_and_has_no_numbers_of_another(qtbot, win
     assert "of rays hit" in status.figures.text()
 
 
+@pytest.fixture
+def endless(monkeypatch):
+    """A picture shows nothing at all until it is cancelled."""
+    def render(*given, cancel, **more):
+        assert cancel.wait(PATIENCE / 1000)
+        return RENDER(*given, cancel=cancel, **more)
+
+    monkeypatch.setattr(jaart.core.render, "render", render)
+    return monkeypatch
+
+
+def test_a_first_picture_that_was_stopped_is_called_so_and_the_panels_are_there(qtbot, bare, endless):
+    window, view = bare, bare.view
+    assert view._nothing() == "Drop a file here, or open one"
+    window.model.open("standard")
+    qtbot.waitUntil(lambda: window.model.scene is not None, timeout=PATIENCE)
+    press_stop(qtbot, window)
+    assert view._nothing() == window.statusBar().state.text() == "Stopped. Changing a value begins again."
+    qtbot.waitUntil(lambda: window.panels_ready, timeout=PATIENCE)
+    assert all(dock.panel is not None for dock in window.docks.values())
+    endless.undo()
+    choose(window.docks["Parameters"].panel.rows["bail"].combo, "growth")
+    settle(qtbot, window.model)
+    assert window.model.complete
+
+
 def test_words_follow_a_value_before_its_picture_is_done(qtbot, window, held):
     model, rows = window.model, window.docks["Parameters"].panel.rows
     choose(rows["trust"].word, "radius")

@@ -67,6 +67,23 @@ def test_the_circles_in_the_plane_go_through_where_the_ray_pierces_the_balls(ray
     assert np.array(sorted(found)) == pytest.approx(np.array(sorted(map(tuple, ways))), rel=1e-6)
 
 
+def test_one_ball_stands_out_and_it_is_the_one_that_the_search_is_in(ray):
+    for step in range(ray.steps):
+        centre, radius = np.split(ray.balls[ray.step_cell[step, 0]], [3])
+        around = ray.query[step] - ray.balls[:, :3]
+        assert np.count_nonzero(np.linalg.norm(around, axis=1) <= ray.balls[:, 3]) > 1  # others hold the query too
+        circles = [c for c in projection_figure(ray, step).axes[0].collections
+                   if type(c).__name__ == "EllipseCollection" and c.get_linewidth()[0] > 1]
+        (bold,) = circles
+        (((t, _), wide),) = zip(bold.get_offsets(), bold.get_widths(), strict=True)
+        assert t == pytest.approx((centre - ray.origin) @ ray.direction, rel=1e-6)
+        assert 0 < wide <= 2 * radius[0]
+        meshes = step_meshes(ray, step)
+        away = np.linalg.norm(meshes["full_cells"].points - centre, axis=1)
+        assert away == pytest.approx(np.full(len(away), radius[0]), rel=1e-6)
+        assert len(meshes["cells"])
+
+
 def test_the_energy_plot_of_a_cloud_shows_its_stretches_and_four_curves(ray):
     axes = energy_figure(ray).axes[0]
     labels = [line.get_label() for line in axes.lines]
