@@ -78,7 +78,7 @@ def _boxes(width: float, height: float, notes: int) -> list[tuple[float, float, 
 
 def _steps(axes: Axes, statistics: Statistics, colours: Theme) -> None:
     every, last = statistics.evaluations, statistics.iterations
-    _histogram(axes, every, colours, "Iterations a ray", "iterations (all or last start)", colours.query, "all")
+    _histogram(axes, every, colours, "Iterations a ray", "iterations (all, or the hit's start)", colours.query, "all")
     _, shares = last.shares()
     if len(shares):
         edges = np.arange(len(shares) + 1) - 0.5

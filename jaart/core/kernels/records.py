@@ -235,7 +235,7 @@ class Cells(NamedTuple):
 class RayEnd(NamedTuple):
     """How a ray ended; t, point and n are NaN without a hit, energy and off without a start.
 
-    energy: length of the last step, or the minimum; off: off-centre value; iterations: steps of the last start;
+    energy: length of the last step, or the minimum; off: off-centre value; iterations: of the hit's or last start;
     evaluations: of all starts; used: surfels summed over them; cells: cells or balls visited; lowered:
     evaluations with fewer degrees than asked for; gap: as of End; rows: written to the log; missing: 0 where
     more balls are to be listed first, else -1.
