@@ -30,7 +30,7 @@ LONG = {
     "rays": ["render", "splash", "--size", "6000x6000", "--hits", "h.npz", "--output", "p.png"],
     "rays ": ["statistics", "splash", "--size", "6000x6000", "--output", "s.csv"],
     "cases": ["study", "stability", "--output", "study"],
-    "layers of cells": ["isosurface", "standard", "--energy", "tangent", "--subdivide", "6", "--set", "raster=64",
+    "layers of cells": ["isosurface", "standard", "--energy", "tangent", "--subdivide", "8", "--set", "raster=80",
                         "--output", "m.ply"],
     "light through water": ["render", "splash", "--set", "shading=water", "--size", "1200x1200", "--output", "p.png"],
     "reading points.npz": ["info", "points.npz"],
