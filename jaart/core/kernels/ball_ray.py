@@ -151,8 +151,7 @@ def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, room: Room, l
     """The first hit of a ray, or how its last start ended; it ends at once where the pool is short of room, or more
     balls are to be listed.
 
-    o, d: origin and unit direction in the cloud's local frame; room, listed: the balls of its bundle; keys, items: room
-    for the heap.
+    o, d: origin and unit direction in the local frame; room, listed: its bundle's balls; keys, items: its heap.
     """
     if is_bad(in_units(balls.tree, o, plan.rule.h), d):
         return no_hit(r.BAD_RAY)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from math import inf, nan
+from typing import Any
 
 import numpy as np
 
 from jaart.core.kernels import records as r
-from jaart.core.kernels.blocks import VECTOR
+from jaart.core.kernels.blocks import wide_of
 from jaart.core.kernels.jit import kernel
 from jaart.core.kernels.near import point
 from jaart.core.kernels.normals import Normal, covariance_normal, surfel_normal
@@ -32,7 +33,8 @@ _NOTHING = (nan, nan, nan)
 @kernel(inline=True)
 def whole_vectors(size: Unsigned) -> Unsigned:
     """How long columns of so many rows are that are filled up to whole vectors."""
-    return (size + np.uint64(VECTOR - 1)) // np.uint64(VECTOR) * np.uint64(VECTOR)
+    signed: Any = np.int64(size)
+    return np.uint64(wide_of(signed))
 
 
 @kernel()
