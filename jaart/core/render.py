@@ -19,6 +19,7 @@ from jaart.core.kernels.pinhole import View, write_rays
 from jaart.core.kernels.records import Out
 from jaart.core.prepare import Prepared
 from jaart.core.records import Array, Hits
+from jaart.core.reuse import lent
 from jaart.core.scene import Scene
 from jaart.core.settings import Settings, preset
 from jaart.core.telling import stoppable
@@ -117,7 +118,7 @@ class _Job:
     def beginning(self, ready: Prepared) -> _Job:
         """This job with what is known of where the rays of a picture can meet anything."""
         blocks = NO_BLOCKS if self.view is None else ready.tracer.blocks(self.view)
-        return replace(self, blocks=blocks, begins=np.empty(self.count if blocks.size else 0))
+        return replace(self, blocks=blocks, begins=lent((self.count if blocks.size else 0,)))
 
 
 @dataclass
@@ -141,7 +142,7 @@ def _camera_job(scene: Scene, settings: Settings, camera: Camera | None, size: S
     if count * _BYTES_A_RAY > memory.limit():
         raise RayError(f"size {size[0]}x{size[1]}: needs {memory.words(count * _BYTES_A_RAY)} of memory, more than the "
                        f"{memory.words(memory.limit())} it may take")
-    return _Job(np.empty((count, 3)), np.empty((count, 3)), camera, size, camera.view(size))
+    return _Job(lent((count, 3)), lent((count, 3)), camera, size, camera.view(size))
 
 
 def _list_job(rays: tuple[Array, Array], any_hit: bool) -> _Job:

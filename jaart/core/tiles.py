@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels.pinhole import EDGE
 from jaart.core.kernels.records import Out
+from jaart.core.reuse import lent
 
 #: Rays in a tile: long enough to hide the cost of a task, short enough to stop soon.
 TILE = 4096
@@ -60,7 +61,7 @@ def columns_for(count: int) -> Out:
 
     All but the status lie in two pieces, large enough for a system to give them in few, large pages.
     """
-    floats, numbers = np.empty(10 * count), np.empty((8, count), np.int32)
+    floats, numbers = lent((10 * count,)), lent((8, count), np.int32)
     t, energy, off_centre, gap = floats[:4 * count].reshape(4, count)
     point, normal = floats[4 * count:].reshape(2, count, 3)
     numbers[5:] = 0  # not every kind of tracer counts these
