@@ -12,6 +12,7 @@ from jaart.core.environment import Environment
 from jaart.core.errors import SettingsError
 from jaart.core.lights import lights, shadows_wanted
 from jaart.core.maps import MAPS, Map, find, scale
+from jaart.core.memory import pieces
 from jaart.core.phong import blue, phong
 from jaart.core.records import STATUS_NAMES, Hits, Quality
 from jaart.core.scene import Scene
@@ -23,6 +24,9 @@ from jaart.core.water import water
 __all__ = ["BACKGROUND", "COLOURS", "MAPS", "NO_VALUE", "TABLE", "Map", "needs_scene", "scale", "shade"]
 
 Array = NDArray[np.float64]
+
+#: So many hits are shaded at once where that takes no rays: what is computed on the way stays in the fast memory.
+AT_ONCE = 1 << 15
 
 #: Linear light in 4096 steps to the bytes of sRGB.
 _LIGHT = np.linspace(0.0, 1.0, 4096)
@@ -76,13 +80,19 @@ def _shaded(colours: Bytes, hits: Hits, settings: Settings, scene: Scene | None,
         colours[:] = _bytes(water(hits, settings, Environment.of(scene, hits.settings), rays).colour)
         return
     at = np.flatnonzero(hits.hit)
+    for some in pieces(len(at), AT_ONCE if rays is None else len(at)):
+        colours[at[some]] = _lit(hits, at[some], settings, rays)
+
+
+def _lit(hits: Hits, at: NDArray[np.intp], settings: Settings, rays: Tracer | None) -> Bytes:
+    """The colours (N, 3) of some hits."""
     point, normal, view = (column.take(at, axis=0) for column in (hits.point, hits.normal, hits.direction))
     view = -view
     seen = lights(settings, point, normal, view, tracer=rays)
     if settings.shading == "diffuse":
-        colours[at] = np.rint(255 * blue(seen, normal)).astype(np.uint8)
-    else:
-        colours[at] = _bytes(phong(seen, normal, view, settings))
+        plain: Bytes = np.rint(255 * blue(seen, normal)).astype(np.uint8)
+        return plain
+    return _bytes(phong(seen, normal, view, settings))
 
 
 def _bytes(light: Array) -> Bytes:
