@@ -97,6 +97,13 @@ def test_pixels_that_are_traced_together_are_a_block() -> None:
     assert sorted(zip(x.tolist(), y.tolist(), strict=True)) == [(i, j) for i in range(8, 16) for j in range(8)]
 
 
+@pytest.mark.parametrize("step", [1, 2])
+def test_each_quarter_of_a_block_is_as_wide_as_high(step: int) -> None:
+    pixels = in_blocks((64, 64), step).reshape(-1, 16)
+    y, x = np.divmod(pixels, 64)
+    assert (np.ptp(x, axis=1) == 3 * step).all() and (np.ptp(y, axis=1) == 3 * step).all()
+
+
 def test_a_list_of_rays_gives_the_hits_of_the_picture(standard: Scene) -> None:
     picture = render(standard, size=(40, 30))
     listed = render(standard, rays=(picture.origin, picture.direction))

@@ -27,6 +27,8 @@ from jaart.core.kernels.vectors import along, dot, length
 Ints = NDArray[np.int64]
 #: Rays of a bundle at most: a block of 8 × 8 pixels. Fewer than that do not go together.
 MOST, FEW = 64, 16
+#: So many rays go alone where even so few are too many, before some try again.
+LONE = 256
 #: Balls that a bundle may list at most; more cost each ray more than the way through the tree. So many at once.
 ROOM, ROUND = 512, 64
 #: Nodes that may wait.
@@ -220,7 +222,7 @@ def nothing_listed(balls: Balls, cone: Cone, rays: int, room: Room, keys: Array)
 @kernel(STRICT, inline=True)
 def last_of(size: int, begin: int, count: int) -> int:
     """Where of so many rays the bundle ends that begins with one of them; too small a size: where they stay alone."""
-    return min(begin + (size - begin % size if size >= FEW else MOST), count)
+    return min(begin + (size - begin % size if size >= FEW else LONE), count)
 
 
 @kernel(STRICT, inline=True)
