@@ -50,7 +50,8 @@ def render(scene: Scene, settings: Settings | None = None, camera: Camera | None
     length; threads: as many as the machine has when None;
     progress(done, all rays) is called from the caller's thread; cancel: set it to stop;
     picture: called with coarse pictures while the work goes on: every 8th pixel, then every 4th and 2nd where the
-    rest takes long; any_hit: one that is found sooner will do for the first, as shadows need.
+    rest takes long; again from the first where memory ends and the picture begins anew; any_hit: one that is found
+    sooner will do for the first, as shadows need.
     Raises RayError for a picture or rays that cannot be, Cancelled after cancel was set.
     """
     settings = settings or preset("best")
