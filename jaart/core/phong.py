@@ -32,8 +32,10 @@ def phong(lights: Iterable[Light], normal: Array, view: Array, settings: Setting
         water += light.share * settings.diffuse * np.maximum(towards, 0.0)
         highlight = np.where(towards > 0, np.clip(mirrored, 0.0, 1.0), 0.0) ** settings.shininess
         white += light.share * settings.specular * highlight
-    light_seen: Array = water[:, None] * WATER + white[:, None]
-    return light_seen
+    light_seen = np.empty((3, len(normal)))
+    for part, own in zip(light_seen, WATER, strict=True):
+        part[:] = water * own + white
+    return light_seen.T
 
 
 def blue(lights: Iterable[Light], normal: Array) -> Array:
