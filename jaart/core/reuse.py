@@ -39,7 +39,7 @@ class Shelf:
         """Keep a room; those let go first are given up where all are too much."""
         self._free[id(room)] = room
         while self.kept > min(MOST, SHARE * memory.limit()):
-            self._free.pop(next(iter(tuple(self._free))), None)
+            self._free.pop(next(iter(tuple(self._free)), 0), None)  # another thread may have taken the last
 
     def take(self, size: int) -> Bytes:
         """Room of just so many bytes, from here where there is one."""

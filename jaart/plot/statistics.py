@@ -82,7 +82,7 @@ def _steps(axes: Axes, statistics: Statistics, colours: Theme) -> None:
     _, shares = last.shares()
     if len(shares):
         edges = np.arange(len(shares) + 1) - 0.5
-        axes.stairs(shares, edges, color=colours.hit, linewidth=1.6, label=f"the hit's, mean {last.mean:.2f}")
+        axes.stairs(shares, edges, color=colours.hit, linewidth=1.6, label=f"hit, mean {last.mean:.2f}")
         axes.set_ylim(0, 1.08 * max(shares.max(), axes.get_ylim()[1] / 1.08))
     if every.rays:
         style.legend(axes, colours, loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
