@@ -85,7 +85,7 @@ def _steps(axes: Axes, statistics: Statistics, colours: Theme) -> None:
         axes.stairs(shares, edges, color=colours.hit, linewidth=1.6, label=f"hit, mean {last.mean:.2f}")
         axes.set_ylim(0, 1.08 * max(shares.max(), axes.get_ylim()[1] / 1.08))
     if every.rays:
-        style.legend(axes, colours, loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
+        style.legend(axes, colours, loc="lower left", bbox_to_anchor=(-0.16, 1), ncols=2)
 
 
 def _histogram(axes: Axes, histogram: Histogram, colours: Theme, title: str, xlabel: str, colour: str,
