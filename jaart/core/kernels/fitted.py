@@ -12,7 +12,7 @@ from jaart.core.kernels.blocks import wide_of
 from jaart.core.kernels.jit import kernel
 from jaart.core.kernels.near import point
 from jaart.core.kernels.normals import Normal, covariance_normal, surfel_normal
-from jaart.core.kernels.polynomial import fit
+from jaart.core.kernels.polynomial_fit import fit
 from jaart.core.kernels.records import Array, Near, Rule, Unsigned, Value, Vector
 from jaart.core.kernels.sums import offset_sums
 from jaart.core.kernels.tangent import no_value

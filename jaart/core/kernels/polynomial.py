@@ -1,30 +1,14 @@
-"""Heights over a plane as a polynomial g(u, v) of degree 0 to 4, by weighted least squares [A 10].
+"""Heights over a plane as a polynomial g(u, v) of degree 0 to 4 [A 10]: its values, and where rays meet it.
 
 Monomials go by degree, in each by falling powers of u: 1; u, v; u², uv, v²; u³, u²v, uv², v³; u⁴, …, v⁴. So a lower
-degree has the leading coefficients, and the leading columns of the same system. u, v and heights are in feature
-sizes h, which keeps every monomial near 1.
+degree has the leading coefficients. u, v and heights are in feature sizes h, which keeps every monomial near 1.
 """
 
 from __future__ import annotations
 
-from math import nan, sqrt
-
-import numpy as np
-
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.least_squares import factorise, rank_ratio, substitute
-from jaart.core.kernels.records import COEFFICIENTS, Array, Unsigned, Vector
+from jaart.core.kernels.records import Array, Vector
 from jaart.core.kernels.roots import Quartic
-
-#: Columns of the scratch array: u, v, height, weight, then the system.
-SCRATCH_COLUMNS = 4 + COEFFICIENTS + 1
-#: A point of a smaller share of the largest weight does not count.
-_NEGLIGIBLE = 1e-6
-#: A smaller ratio of R's diagonal leaves too few digits.
-_SINGULAR = 1e-7
-#: The smallest float of full precision.
-_TINY = 2.2250738585072014e-308
-_TWO, _THREE, _FOUR = np.uint64(2), np.uint64(3), np.uint64(4)
 
 
 @kernel()
@@ -33,88 +17,23 @@ def terms(degree: int) -> int:
     return (degree + 1) * (degree + 2) // 2
 
 
-@kernel()
-def _higher(work: Array, a: Unsigned, line: Unsigned, below: Unsigned, patch: float, to: Unsigned,
-            rows: Unsigned) -> None:
-    """Write a column times u or v, plus patch times another column, into a third."""
-    for i in range(rows):
-        work[to + i] = work[a + i] * work[line + i] + patch * work[below + i]
+@kernel(STRICT)
+def of_means(c: Array, patch: float) -> None:
+    """Turn a polynomial of means over patches into the one whose means they are, in place.
 
-
-@kernel()
-def _write_system(work: Array, rows: Unsigned, degree: int, largest: float, patch: float) -> None:
-    """Write the monomials' columns and the heights', each row times the root of its weight's share.
-
-    With a patch m they are the monomials' means over it: E(u^(k+1)) = u·E(u^k) + k·m·E(u^(k-1)), which holds for
-    a Gaussian patch, and up to the third degree for any that is even.
+    patch: variance m of a patch along u and along v. A mean over a Gaussian patch is exp(m/2·Δ)g, up to the third
+    degree over any that is even; back leads exp(-m/2·Δ), which ends with Δ² for the fourth degree.
     """
-    first, height, weight = _FOUR * rows, _TWO * rows, _THREE * rows
-    per_largest = 1.0 / largest
-    for i in range(rows):
-        work[first + i] = sqrt(work[weight + i] * per_largest)
-    below, lower, to = first, first, first + rows  # where the last degree but one, the last and this one begin
-    for d in range(1, degree + 1):
-        begin = to
-        for j in range(d):
-            two_less = below + np.uint64(j) * rows if j < d - 1 else first
-            _higher(work, lower + np.uint64(j) * rows, np.uint64(0), two_less, (d - 1 - j) * patch, to, rows)
-            to += rows
-        _higher(work, begin - rows, rows, lower - rows if d > 1 else first, (d - 1) * patch, to, rows)
-        below, lower, to = lower, begin, to + rows
-    _higher(work, first, height, first, 0.0, to, rows)
-
-
-@kernel()
-def _weights(work: Array, rows: Unsigned) -> tuple[float, int]:
-    """The largest weight, and the number of weights that count beside it."""
-    weight, largest, many = _THREE * rows, 0.0, 0
-    for i in range(rows):
-        largest = max(largest, work[weight + i])
-    for i in range(rows):
-        many += work[weight + i] > _NEGLIGIBLE * largest
-    return largest, many
-
-
-@kernel()
-def _mean_height(work: Array, rows: Unsigned) -> float:
-    """The weighted mean of the heights, taken from the first one, so that equal heights give exactly theirs."""
-    height, weight = _TWO * rows, _THREE * rows
-    origin, total, weights = work[height], 0.0, 0.0
-    for i in range(rows):
-        total += work[weight + i] * (work[height + i] - origin)
-        weights += work[weight + i]
-    return origin + total / weights
-
-
-@kernel()
-def fit(work: Array, rows: Unsigned, degree: int, patch: float, coefficients: Array) -> int:
-    """Write g's coefficients into (15,), 0 beyond its degree, and return its degree, which may be lower.
-
-    work: flat, at least SCRATCH_COLUMNS·rows long, the first four columns of `rows` values u, v, height and weight; u
-    and the rest are overwritten; rows of zeros may fill the columns up. patch: 0 when the polynomial is to pass through
-    the points; else each stands for a patch of the surface with this variance along u and along v, and the polynomial's
-    mean over it is to. The degree is lowered until 1.5 points a coefficient have weight and no column depends on
-    others; degree 0 is the weighted mean. -1 and NaN where no point has weight.
-    """
-    for k in range(COEFFICIENTS):
-        coefficients[k] = 0.0
-    largest, many = _weights(work, rows)
-    if not largest >= _TINY:
-        coefficients[0] = nan
-        return -1
-    while degree > 0 and 3 * terms(degree) > 2 * many:
-        degree -= 1
-    if degree > 0:
-        _write_system(work, rows, degree, largest, patch)
-        first, count = _FOUR * rows, np.uint64(terms(degree))
-        right = first + count * rows
-        factorise(work, first, rows, count, np.uint64(0))  # u is in the system by now
-        while degree > 0 and rank_ratio(work, first, rows, np.uint64(terms(degree))) < _SINGULAR:
-            degree -= 1
-        substitute(work, first, rows, np.uint64(terms(degree)), right, coefficients)
-    if degree == 0:
-        coefficients[0] = _mean_height(work, rows)
-    return degree
+    if patch == 0.0:
+        return
+    by_uu, by_uv, by_vv = 12.0 * c[10] + 2.0 * c[12], 6.0 * (c[11] + c[13]), 2.0 * c[12] + 12.0 * c[14]  # Δg's
+    half = 0.5 * patch
+    c[0] += half * (half * (by_uu + by_vv) - 2.0 * (c[3] + c[5]))
+    c[1] -= half * (6.0 * c[6] + 2.0 * c[8])
+    c[2] -= half * (2.0 * c[7] + 6.0 * c[9])
+    c[3] -= half * by_uu
+    c[4] -= half * by_uv
+    c[5] -= half * by_vv
 
 
 @kernel(STRICT)
