@@ -14,7 +14,7 @@ from jaart.core.kernels.records import Array, Cell, Near, Numbers, Sites, Unsign
 _ZERO, _THREE = np.uint64(0), np.uint64(3)
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def place_number(sites: Sites, cell: Cell) -> int:
     """Where the address of a cell's or a ball's block stands in slots, -1 for a cell that no surfel is near."""
     if sites.shape[0] == 0:
@@ -37,7 +37,7 @@ def gathered(sites: Sites, cell: Cell, number: int) -> int:
     return b.publish(sites.slots, number, address, pool) if pool[b.KEPT] == 0 else address
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def block_of(sites: Sites, cell: Cell) -> int:
     """Address of a place's block."""
     number = place_number(sites, cell)
@@ -47,7 +47,7 @@ def block_of(sites: Sites, cell: Cell) -> int:
     return gathered(sites, cell, number) if address == 0 else address
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def near_in(pool: Numbers, address: int) -> Near:
     """The surfels in a block; none, and the pool says so, where there are more than the scratch has room for."""
     size = wholes_at(address, 1)[0]
@@ -59,7 +59,7 @@ def near_in(pool: Numbers, address: int) -> Near:
     return Near(columns, _ZERO, np.uint64(size), np.uint64(wide))
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def surfels_near(sites: Sites, cell: Cell) -> Near:
     """The surfels near a cell of a lattice or in a ball's neighbourhood, relative to its centre.
 
@@ -68,14 +68,14 @@ def surfels_near(sites: Sites, cell: Cell) -> Near:
     return near_in(sites.pool, block_of(sites, cell))
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def point(near: Near, i: Unsigned) -> Vector:
     """Position of surfel i, relative to the place's centre."""
     at, n = near.base + i, near.wide
     return near.columns[at], near.columns[at + n], near.columns[at + n + n]
 
 
-@kernel(STRICT)
+@kernel(STRICT, inline=True)
 def normal(near: Near, i: Unsigned) -> Vector:
     """Unit normal of surfel i."""
     at, n = near.base + _THREE * near.wide + i, near.wide

@@ -30,8 +30,8 @@ X, Y, Z = _COLUMN[0], _COLUMN[1], _COLUMN[2]
 WALKING, FOUND, LEFT = 0.0, 1.0, 2.0
 #: From farther away one unit in the last place of the origin is wider than a cell.
 _FAR = 1e15
-#: So few rays go on alone.
-FEW = 4
+#: So many rays, a vector of them, walk on until none of them does.
+ABREAST: Unsigned = np.uint64(8)
 
 
 @kernel(STRICT, inline=True)
@@ -87,33 +87,35 @@ def enter(p: Array, nx: float, ny: float, nz: float, count: Unsigned) -> None:
         p[AT + X + lane], p[AT + Y + lane], p[AT + Z + lane] = spot_at(axes_in(p, lane, nx, ny, nz), p[T + lane])
 
 
-@kernel(STRICT)
-def look_around(p: Array, empty: Empty, count: Unsigned) -> None:
-    """Write how far each ray's cell is from the nearest one with a surfel."""
-    for lane in range(count):
+@kernel(STRICT, inline=True)
+def look_around(p: Array, empty: Empty, first: Unsigned) -> None:
+    """Write how far the cells of a vector of rays are from the nearest one with a surfel."""
+    for i in range(ABREAST):
+        lane = first + i
         if p[STATE + lane] == WALKING:
             cell = int(p[AT + X + lane]), int(p[AT + Y + lane]), int(p[AT + Z + lane])
             p[AWAY + lane] = float(away(empty, cell))
 
 
 @kernel(STRICT)
-def step(p: Array, nx: float, ny: float, nz: float, free: float, count: Unsigned) -> int:
-    """One step of every ray that walks; returns how many go on walking."""
+def step(p: Array, nx: float, ny: float, nz: float, free: float, first: Unsigned) -> int:
+    """One step of every ray of a vector that walks; returns how many go on walking."""
     walking = 0
-    for lane in range(count):
+    for i in range(ABREAST):
+        lane = first + i
         away, state = p[AWAY + lane], p[STATE + lane]
         reach = max(away - free - 1.0, 0.0)
         t, spot = onward(axes_in(p, lane, nx, ny, nz), spot_in(p, lane), reach)
-        i, j, k = spot
-        inside = 0.0 <= i < nx and 0.0 <= j < ny and 0.0 <= k < nz and t <= p[LEAVE + lane]
+        x, y, z = spot
+        inside = 0.0 <= x < nx and 0.0 <= y < ny and 0.0 <= z < nz and t <= p[LEAVE + lane]
         walks, found = state == WALKING, away <= free
         goes = walks and not found
         p[VISITED + lane] += 1.0 if walks else 0.0
         p[STATE + lane] = (FOUND if found else (WALKING if inside else LEFT)) if walks else state
         p[T + lane] = t if goes else p[T + lane]
-        p[AT + X + lane] = i if goes else p[AT + X + lane]
-        p[AT + Y + lane] = j if goes else p[AT + Y + lane]
-        p[AT + Z + lane] = k if goes else p[AT + Z + lane]
+        p[AT + X + lane] = x if goes else p[AT + X + lane]
+        p[AT + Y + lane] = y if goes else p[AT + Y + lane]
+        p[AT + Z + lane] = z if goes else p[AT + Z + lane]
         walking += 1 if goes and inside else 0
     return walking
 
@@ -134,16 +136,27 @@ def place_ray(p: Array, lane: Unsigned, o: Vector, d: Vector, t: float) -> None:
 
 
 @kernel(STRICT)
+def walk_on(p: Array, empty: Empty, free: int, count: Unsigned) -> None:
+    """Walk until each ray is in a cell that a search begins in or has left the lattice."""
+    nx, ny, nz = empty.shape
+    x, y, z, none = float(nx), float(ny), float(nz), float(free)
+    for first in range(np.uint64(0), count, ABREAST):
+        walking = 1
+        while walking > 0:
+            look_around(p, empty, first)
+            walking = step(p, x, y, z, none, first)
+
+
+@kernel(STRICT)
 def walk_together(p: Array, empty: Empty, free: int, even: bool, count: Unsigned) -> None:
-    """Walk until no more than a few rays are without a cell to search in.
+    """Walk from where the rays are placed to the first cell that each has to search in.
 
     p: (ROOM,), the rays placed; free: a search begins in cells no farther than this from one with a surfel;
     even: steps are even, and every ray goes alone.
     """
     nx, ny, nz = empty.shape
-    x, y, z, none = float(nx), float(ny), float(nz), float(free)
-    enter(p, x, y, z, count)
-    walking = FEW if even else FEW + 1
-    while walking > FEW:
-        look_around(p, empty, count)
-        walking = step(p, x, y, z, none, count)
+    enter(p, float(nx), float(ny), float(nz), count)
+    for lane in range(count, LANES):
+        p[STATE + lane] = LEFT
+    if not even:
+        walk_on(p, empty, free, count)
