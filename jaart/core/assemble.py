@@ -84,6 +84,20 @@ def evaluator(values: Chosen) -> Any:
     return tangent.tangent_surfel if values.normal == "surfel" else tangent.tangent_covariance
 
 
+def goes_together(settings: Settings, values: Chosen) -> bool:
+    """Whether the rays of a lattice search side by side: the plain iteration, with a step for each cell on the way.
+
+    Tangent surface, surfels' normals and Gaussian weights of all that is gathered near a cell; of the bounds the one
+    that is known anyway; nothing beside the averaged normal is shown.
+    """
+    bounds = bounds_of(settings, values)
+    plain = values.method == "tangent" and values.search == "iterate" and values.normal == "surfel"
+    whole = values.weight == "gaussian" and values.neighbourhood in ("cell_ball", "cell_knn")
+    return (plain and whole and settings.traversal == "exact" and settings.bail != "growth"
+            and bounds == Bounds(bounds.off_centre, -math.inf, math.inf, math.inf, -math.inf)
+            and not shows_gradient(settings))
+
+
 def kernels_of(scene: Scene, settings: Settings, values: Chosen) -> tuple[Any, ...]:
     """The kernels that are called by address with these values."""
     fitted_ones = (approach.approach,) if values.method in FITTED else ()

@@ -11,7 +11,7 @@ from threading import Event
 from typing import Any, TypeVar, cast
 
 from jaart.core import extents, meaning
-from jaart.core.assemble import plan_of
+from jaart.core.assemble import goes_together, plan_of
 from jaart.core.balls import Cloud, CloudTracer
 from jaart.core.cell_table import cell_table
 from jaart.core.chosen import Chosen
@@ -102,7 +102,7 @@ def tracer(scene: Scene, settings: Settings, values: Chosen, cancel: Event | Non
     if meaning.fits_centres(scene, settings, values):
         key = (settings.key("neighbours"), values.radius, plan.rule, plan.how.evaluate)
         kept = scene.once("centres", key, lambda: centres_for(table.sites))
-    return LatticeTracer(lambda: made, plan, kept)
+    return LatticeTracer(lambda: made, plan, kept, goes_together(settings, values))
 
 
 def balls(scene: Scene, settings: Settings, values: Chosen) -> Cloud:

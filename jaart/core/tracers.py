@@ -9,9 +9,8 @@ from typing import Protocol
 
 import numpy as np
 
-from jaart.core.kernels import beams, blocks, ray
+from jaart.core.kernels import abreast, beams, blocks, packet, ray, together
 from jaart.core.kernels.guess import GUESS_WIDTH
-from jaart.core.kernels.packet import ROOM
 from jaart.core.kernels.pinhole import EDGE, View
 from jaart.core.kernels.records import LOG_WIDTH, Cells, Out, Plan, Sites
 from jaart.core.memory import sparse
@@ -105,20 +104,26 @@ def centres_for(sites: Sites) -> Centres:
 
 @dataclass(frozen=True, eq=False)
 class LatticeTracer(OnLattice):
-    """A lattice of surfels whose surface each ray searches; centres: where a search begins by them."""
+    """A lattice of surfels whose surface each ray searches.
+
+    centres: where a search begins by them; together: whether rays without a log search side by side.
+    """
 
     centres: Centres | None = None
+    together: bool = False
 
     def trace(self, origins: Array, directions: Array, pixels: Pixels, out: Out, log: Array = NO_LOG,
               any_hit: bool = False, begins: Array = NO_BEGINS) -> int:
         """Trace some rays into their rows of the columns; see `Tracer`."""
-        packet = np.empty(ROOM)
+        abreast_now = self.together and not len(log)
+        driver = together.trace_together if abreast_now else ray.trace_rays
+        columns = np.empty(abreast.ROOM if abreast_now else packet.ROOM)
 
         def rest(sites: Sites, pool: Pool, rays: Pixels) -> tuple[int, int]:
             if self.centres:
                 self.centres.shown_to(pool)
-            done, written = ray.trace_rays(self.cells._replace(sites=sites), self.plan, origins, directions, begins,
-                                           rays, out, log, packet, pool.work, pool.fit)
+            done, written = driver(self.cells._replace(sites=sites), self.plan, origins, directions, begins, rays, out,
+                                   log, columns, pool.work, pool.fit)
             return done, written
 
         return all_of(self.sites, pixels, rest)

@@ -12,7 +12,7 @@ from jaart.core.kernels.sums import covariance_sums, normal_sums
 from jaart.core.kernels.vectors import dot, scaled
 
 #: |Σθn| below this share of Σθ leaves no normal: opposite surfels cancel.
-_CANCELLED = 1e-8
+CANCELLED = 1e-8
 #: λ1 - λ0 below this share of λ2 leaves no normal: a line, a point or a ball of points.
 _NO_GAP = 1e-8
 
@@ -31,7 +31,7 @@ def normal_of_sum(total: Vector, s: float, off: Vector) -> Normal:
     """n = Σθn / |Σθn| [T 2.13]; turn = (c - <n, c>n)/|Σθ_N n|, c the off-centre vector."""
     m = scaled(total, 1.0 / s)
     size = sqrt(dot(m, m))
-    if not size > _CANCELLED:
+    if not size > CANCELLED:
         return r.UNDEFINED_NORMAL, (nan, nan, nan), (nan, nan, nan)
     n = scaled(m, 1.0 / size)
     f = dot(n, off)

@@ -136,15 +136,13 @@ def place_ray(p: Array, lane: Unsigned, o: Vector, d: Vector, t: float) -> None:
 
 
 @kernel(STRICT)
-def walk_on(p: Array, empty: Empty, free: int, count: Unsigned) -> None:
-    """Walk until each ray is in a cell that a search begins in or has left the lattice."""
+def walk_vector(p: Array, empty: Empty, free: int, first: Unsigned) -> None:
+    """Walk until each ray of a vector is in a cell that a search begins in or has left the lattice."""
     nx, ny, nz = empty.shape
-    x, y, z, none = float(nx), float(ny), float(nz), float(free)
-    for first in range(np.uint64(0), count, ABREAST):
-        walking = 1
-        while walking > 0:
-            look_around(p, empty, first)
-            walking = step(p, x, y, z, none, first)
+    walking = 1
+    while walking > 0:
+        look_around(p, empty, first)
+        walking = step(p, float(nx), float(ny), float(nz), float(free), first)
 
 
 @kernel(STRICT)
@@ -159,4 +157,5 @@ def walk_together(p: Array, empty: Empty, free: int, even: bool, count: Unsigned
     for lane in range(count, LANES):
         p[STATE + lane] = LEFT
     if not even:
-        walk_on(p, empty, free, count)
+        for first in range(np.uint64(0), count, ABREAST):
+            walk_vector(p, empty, free, first)

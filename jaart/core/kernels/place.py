@@ -6,7 +6,7 @@ from the origin is ever subtracted.
 
 from __future__ import annotations
 
-from math import floor
+import numpy as np
 
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.records import Cell, Sites, Start, Vector
@@ -31,10 +31,11 @@ def in_scene(sites: Sites, cell: Cell, x: Vector) -> Vector:
     return along(centre_of(sites, cell), x, 1.0)
 
 
-@kernel(STRICT)
-def in_reach(x: float, n: int) -> bool:
-    """Whether a coordinate lies within a lattice of n cells."""
-    return -_SLACK <= x <= n + _SLACK
+@kernel(STRICT, inline=True)
+def along_axis(i: float, x: float, n: float) -> tuple[float, float, bool]:
+    """The cell that holds a coordinate x of cell i's, x from its centre, and whether it lies within n cells."""
+    to = min(max(i + np.floor(x + 0.5), 0.0), n - 1.0)
+    return to, x - (to - i), -_SLACK <= i + 0.5 + x <= n + _SLACK
 
 
 @kernel(STRICT)
@@ -46,10 +47,7 @@ def located(sites: Sites, start: Start, d: Vector, s: float) -> tuple[Cell, Vect
     x = along(start.base, d, s)
     if sites.shape[0] == 0:
         return start.cell, x, True
-    i, j, k = start.cell
-    nx, ny, nz = sites.shape
-    inside = (in_reach(i + 0.5 + x[0], nx) and in_reach(j + 0.5 + x[1], ny) and in_reach(k + 0.5 + x[2], nz))
-    to_i = min(max(i + int(floor(x[0] + 0.5)), 0), nx - 1)
-    to_j = min(max(j + int(floor(x[1] + 0.5)), 0), ny - 1)
-    to_k = min(max(k + int(floor(x[2] + 0.5)), 0), nz - 1)
-    return (to_i, to_j, to_k), (x[0] - (to_i - i), x[1] - (to_j - j), x[2] - (to_k - k)), inside
+    i, x0, of_x = along_axis(float(start.cell[0]), x[0], float(sites.shape[0]))
+    j, x1, of_y = along_axis(float(start.cell[1]), x[1], float(sites.shape[1]))
+    k, x2, of_z = along_axis(float(start.cell[2]), x[2], float(sites.shape[2]))
+    return (int(i), int(j), int(k)), (x0, x1, x2), of_x and of_y and of_z

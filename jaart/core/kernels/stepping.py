@@ -23,9 +23,9 @@ from jaart.core.kernels.shown import difference
 from jaart.core.kernels.vectors import along, dot, length, scaled
 
 #: A ray whose angle with the plane has a smaller sine runs along it.
-_PARALLEL = 1e-12
+PARALLEL = 1e-12
 #: Four units in the last place of 1.
-_ROUNDING = 8.9e-16
+ROUNDING = 8.9e-16
 _NONE: Any = np.int64(0)
 
 
@@ -55,7 +55,7 @@ def state_after(how: Search, start: Start, s: float, step: float, v: Value, slop
         return r.LEFT_TRUST
     if (abs(v.f) if how.by_value == 1 else abs(step)) < how.arrived:
         return r.CONVERGED
-    return r.CONTINUE if abs(step * slope) > _ROUNDING * (abs(s) + h + length(x)) else r.FLOOR
+    return r.CONTINUE if abs(step * slope) > ROUNDING * (abs(s) + h + length(x)) else r.FLOOR
 
 
 @kernel(STRICT)
@@ -69,7 +69,7 @@ def state_before(v: Value, slope: float, how: Search, f_before: float) -> int:
     """CONTINUE, or why there is no step from here."""
     if v.state != r.CONTINUE:
         return v.state
-    if abs(slope) < _PARALLEL:
+    if abs(slope) < PARALLEL:
         return r.PARALLEL
     return r.CAP if how.growth == 1 and abs(v.f) > f_before else r.CONTINUE
 
