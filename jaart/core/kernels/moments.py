@@ -24,7 +24,7 @@ def number_of(degree: Unsigned, b: Unsigned) -> Unsigned:
 
 
 @kernel(STRICT, inline=True)
-def _put(work: Array, to: Unsigned, values: Any) -> None:
+def put(work: Array, to: Unsigned, values: Any) -> None:
     """Write numbers one behind another."""
     for i in range(len(values)):
         work[to + np.uint64(i)] = values[i]
@@ -54,7 +54,7 @@ def sum_to_fourth(work: Array, t: Unsigned, rows: Unsigned, to: Unsigned) -> Non
         s12 += wuu * vv
         s13 += wuv * vv
         s14 += wvv * vv
-    _put(work, to, (s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12, s13, s14))
+    put(work, to, (s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11, s12, s13, s14))
 
 
 @kernel()

@@ -30,8 +30,8 @@ X, Y, Z = _COLUMN[0], _COLUMN[1], _COLUMN[2]
 WALKING, FOUND, LEFT = 0.0, 1.0, 2.0
 #: From farther away one unit in the last place of the origin is wider than a cell.
 _FAR = 1e15
-#: So many rays, a vector of them, walk on until none of them does.
-ABREAST: Unsigned = np.uint64(8)
+#: So many rays walk on together until none of them does: two vectors, one of which waits while the other works.
+ABREAST: Unsigned = np.uint64(16)
 
 
 @kernel(STRICT, inline=True)

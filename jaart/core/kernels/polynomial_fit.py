@@ -14,7 +14,7 @@ from jaart.core.kernels.blocks import VECTOR
 from jaart.core.kernels.jit import kernel
 from jaart.core.kernels.least_squares import factorise, rank_ratio, substitute
 from jaart.core.kernels.moments import TO_EIGHTH, TO_FOURTH, number_of, sum_moments, sum_to_fourth
-from jaart.core.kernels.normal_equations import eliminate, solve_eliminated
+from jaart.core.kernels.normal_equations import eliminate, solve_eliminated, solve_six
 from jaart.core.kernels.polynomial import of_means, terms, value
 from jaart.core.kernels.records import COEFFICIENTS, Array, Unsigned
 
@@ -120,18 +120,24 @@ def by_moments(work: Array, rows: Unsigned, degree: int, coefficients: Array) ->
     behind = scratch + rows
     moments, right, pivots, matrix = behind + _MOMENTS, behind + _RIGHT, behind + _PIVOTS, behind + _MATRIX
     sum_moments(work, _THREE * rows, rows, degree, scratch, moments)
-    _write_matrix(work, degree, moments, matrix)
-    sine, ratio = eliminate(work, matrix, n, pivots)
-    if not (sine > _DEPENDENT and ratio > _SINGULAR * _SINGULAR):
-        return False
+    sine = ratio = nan
+    if degree != 2:
+        _write_matrix(work, degree, moments, matrix)
+        sine, ratio = eliminate(work, matrix, n, pivots)
     _times(work, _THREE * rows, _TWO * rows, scratch, rows)
-    for _ in range(1 if sine > _ROUGH else 2):
+    for _ in range(2):
         sum_to_fourth(work, scratch, rows, right)
-        solve_eliminated(work, matrix, n, pivots, right)
+        if degree == 2:
+            sine, ratio = solve_six(work, moments, right)
+        else:
+            solve_eliminated(work, matrix, n, pivots, right)
+        if not (sine > _DEPENDENT and ratio > _SINGULAR * _SINGULAR):
+            return False
         for k in range(n):
             coefficients[k] += work[right + k]
-        if not sine > _ROUGH:
-            _write_rest(work, rows, coefficients, scratch)
+        if sine > _ROUGH:
+            return True
+        _write_rest(work, rows, coefficients, scratch)
     return True
 
 
