@@ -134,6 +134,10 @@ def nearest_root(c: Quartic, reach: float) -> float:
     """
     if c[0] == 0.0:
         return 0.0
+    if c[3] == 0.0 and c[4] == 0.0:
+        x, y = _quadratic(c[0], c[1], c[2])
+        nearest = x if abs(x) < abs(y) or (abs(x) == abs(y) and x < y) or y != y else y
+        return nearest if abs(nearest) <= reach else nan
     s = 0.0
     for _ in range(_QUICK):
         step = _value(c, s) / _slope(c, s)
