@@ -17,7 +17,7 @@ from jaart.core.kernels.guess import GUESS_WIDTH, HEIGHT, N_X, N_Y, N_Z, STATE, 
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.near import place_number, surfels_near
 from jaart.core.kernels.records import Array, Bounds, Cell, End, Rule, Search, Sites, Spent, Start, Vector
-from jaart.core.kernels.stepping import step_search
+from jaart.core.kernels.stepping import steps_from
 from jaart.core.kernels.vectors import dot
 
 #: From so far before the point where a ray enters the cell to so far beyond it the surface is looked for, in h.
@@ -69,10 +69,10 @@ def guess(row: Array, start: Start, d: Vector, h: float) -> float:
 @kernel(STRICT)
 def guessed_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector, start: Start, rows: Array,
                    row: int, work: Array, fit: Array) -> End:
-    """`step_search` from where the polynomial at the cell's centre says; no step where the surface keeps away."""
+    """`steps_from` from where the polynomial at the cell's centre says; no step where the surface keeps away."""
     address = row_at(sites, start.cell, rule, how.evaluate, work, fit)
     s = guess(floats_at(address, GUESS_WIDTH), start, d, rule.h) if address != 0 else start.s
     if s != s:
         return ended(r.BACKGROUND, nan, nan, Spent(0, 0, 0, 0), nan)
     begin = Start(start.cell, start.base, start.t, s, start.low, start.high, start.before, start.number)
-    return step_search(sites, rule, how, bounds, d, begin, rows, row, work, fit)
+    return steps_from(sites, rule, how, bounds, d, begin, rows, row, work, fit)

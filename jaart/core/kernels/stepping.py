@@ -74,9 +74,9 @@ def state_before(v: Value, slope: float, how: Search, f_before: float) -> int:
     return r.CAP if how.growth == 1 and abs(v.f) > f_before else r.CONTINUE
 
 
-@kernel(STRICT)
-def step_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector, start: Start, rows: Array, row: int,
-                work: Array, fit: Array) -> End:
+@kernel(STRICT, inline=True)
+def steps_from(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector, start: Start, rows: Array, row: int,
+               work: Array, fit: Array) -> End:
     """Search the surface from a start: step until the step is short [T 2.14], or |f| is [A §4].
 
     d: unit direction; rows: (L, LOG_WIDTH) log, L = 0 for none; row: where to write next; work, fit: scratch.
@@ -117,3 +117,10 @@ def step_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector
             return ended(state, step, off, spent, nan)
         cell, x = to_cell, to
     return ended(r.CAP, step, off, spent, nan)
+
+
+@kernel(STRICT)
+def step_search(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector, start: Start, rows: Array, row: int,
+                work: Array, fit: Array) -> End:
+    """`steps_from`, to be called by its address."""
+    return steps_from(sites, rule, how, bounds, d, start, rows, row, work, fit)
