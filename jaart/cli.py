@@ -198,7 +198,7 @@ def trace(
         ray, up = typed.pixel_ray(view, shape, at), view.up or up
         chosen = seen(loaded, chosen, view, shape)
     assert ray is not None
-    report.say_compiling(loaded, chosen)
+    report.say_compiling(loaded, chosen, tracing=True)
     followed = follow(loaded, chosen, *ray, pixel=at)
     report.say_notes(loaded, chosen)
     files.write_trace(followed, output, up, values_of(loaded, chosen).level)

@@ -181,11 +181,14 @@ def trace_line(trace: Trace) -> str:
            f"{passed}"
 
 
-def say_compiling(scene: Scene, settings: Settings) -> None:
-    """Say on stderr, the first time that kernels are needed on a machine, why nothing happens for some seconds."""
+def say_compiling(scene: Scene, settings: Settings, tracing: bool = False) -> None:
+    """Say on stderr, the first time that kernels are needed on a machine, why nothing happens for some seconds.
+
+    tracing: a single ray is to be followed.
+    """
     from jaart.core.warm import needs_compile
 
-    if needs_compile(scene, settings):
+    if needs_compile(scene, settings, tracing):
         print("Compiling kernels that are needed for the first time on this machine; this takes some seconds, once.",
               file=sys.stderr)
 

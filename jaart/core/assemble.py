@@ -84,16 +84,16 @@ def evaluator(values: Chosen) -> Any:
     return tangent.tangent_surfel if values.normal == "surfel" else tangent.tangent_covariance
 
 
-def goes_together(settings: Settings, values: Chosen) -> bool:
-    """Whether the rays of a lattice search side by side: the plain iteration, with a step for each cell on the way.
+def goes_together(scene: Scene, settings: Settings, values: Chosen) -> bool:
+    """Whether rays search side by side: the plain iteration through the cells of a lattice.
 
     Tangent surface, surfels' normals and Gaussian weights of all that is gathered near a cell; of the bounds the one
-    that is known anyway; nothing beside the averaged normal is shown.
+    that is known anyway; hits show the averaged normal.
     """
     bounds = bounds_of(settings, values)
     plain = values.method == "tangent" and values.search == "iterate" and values.normal == "surfel"
     whole = values.weight == "gaussian" and values.neighbourhood in ("cell_ball", "cell_knn")
-    return (plain and whole and settings.traversal == "exact" and settings.bail != "growth"
+    return (scene.kind != "cloud" and plain and whole and settings.traversal == "exact" and settings.bail != "growth"
             and bounds == Bounds(bounds.off_centre, -math.inf, math.inf, math.inf, -math.inf)
             and not shows_gradient(settings))
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from jaart.core import meaning
-from jaart.core.assemble import bounds_of, rule_of
+from jaart.core.assemble import bounds_of, goes_together, rule_of
 from jaart.core.chosen import Chosen
 from jaart.core.groups.search import searches
 from jaart.core.groups.surface import FITTED, MESHES, evaluates
@@ -126,13 +126,23 @@ def _search(scene: Scene, settings: Settings, values: Chosen) -> tuple[Stage, ..
     if meaning.stretches(values) and searches(values):
         why_not = "a place is searched from side to side"
     where = "from side to side of each place" if meaning.stretches(values) else "from a start in each place"
+    abreast = goes_together(scene, settings, values)
     return (
         stage("centre fits", kept, f"kept for each {place} that a ray asks for", why_not, "method", "search",
               "traversal"),
         stage("first guess", kept, guessed, why_not, "method", "search", "traversal"),
         stage("search", searches(values), f"{values.search}, {where}",
               "triangles are hit at once" if values.method in MESHES else "discs are hit at once", "method", "search"),
+        stage("rays side by side", abreast, "their steps are taken in vectors", _why_alone(scene, values),
+              "method", "search", "normal", "weight", "neighbourhood", "traversal", "bail", "shading_normal"),
         stage("proof of misses", settings.proof, "bounds of the weights", "none is asked for", "search", "proof"))
+
+
+def _why_alone(scene: Scene, values: Chosen) -> str:
+    """Why each ray is searched by itself."""
+    if not searches(values):
+        return "no ray is searched"
+    return "balls are searched ray by ray" if scene.kind == "cloud" else "only the plain iteration goes so"
 
 
 def _bounds(settings: Settings, values: Chosen) -> tuple[Stage, ...]:

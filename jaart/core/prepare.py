@@ -102,7 +102,7 @@ def tracer(scene: Scene, settings: Settings, values: Chosen, cancel: Event | Non
     if meaning.fits_centres(scene, settings, values):
         key = (settings.key("neighbours"), values.radius, plan.rule, plan.how.evaluate)
         kept = scene.once("centres", key, lambda: centres_for(table.sites))
-    return LatticeTracer(lambda: made, plan, kept, goes_together(settings, values))
+    return LatticeTracer(lambda: made, plan, kept, goes_together(scene, settings, values))
 
 
 def balls(scene: Scene, settings: Settings, values: Chosen) -> Cloud:

@@ -20,7 +20,7 @@ from jaart.core.chosen import Chosen, chosen, counts_nearest
 from jaart.core.cloud_surfels import cloud_of
 from jaart.core.errors import SettingsError
 from jaart.core.groups.surface import MESHES
-from jaart.core.kernels import ball_ray, beams, energies, pinhole, ray, traversal
+from jaart.core.kernels import ball_ray, beams, energies, pinhole, ray, together, traversal
 from jaart.core.kernels.records import LOG_WIDTH, Cells, Plan
 from jaart.core.nearest import LEAST, nearest_others
 from jaart.core.parameter import Length
@@ -30,31 +30,34 @@ from jaart.core.settings import Settings
 from jaart.core.surfels import Surfels
 from jaart.core.telling import told
 from jaart.core.tiles import columns_for
-from jaart.core.tracers import LatticeTracer
+from jaart.core.tracers import NO_LOG, LatticeTracer
 
 _LOCK = threading.RLock()
 _O, _D = (1.5, 1.5, 9.0), (0.0, 0.0, -1.0)
 _VIEW = pinhole.View(_O, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), _D, 1.0, 0, 1, 1)
 
 
-def needs_compile(scene: Scene, settings: Settings) -> bool:
+def needs_compile(scene: Scene, settings: Settings, tracing: bool = False) -> bool:
     """Whether kernels will be compiled, which takes seconds, or only loaded from the user's cache.
 
-    False for settings that make no sense in the scene: nothing is compiled for them.
+    tracing: for a single ray with its log, not for pictures. False for settings that make no sense in the scene:
+    nothing is compiled for them.
     """
     try:
         values = meaning.check(scene, settings)
     except SettingsError:
         return False
-    driver = ball_ray.trace_ball_rays if scene.kind == "cloud" else ray.trace_rays
+    abreast = not tracing and assemble.goes_together(scene, settings, values)
+    of_lattice = together.trace_together if abreast else ray.trace_rays
+    driver = ball_ray.trace_ball_rays if scene.kind == "cloud" else of_lattice
     return not all(compiled(f) for f in (driver, *assemble.kernels_of(scene, settings, values)))
 
 
 def warm_up(scene: Scene, settings: Settings, tracing: bool = False) -> Chosen:
     """Run every kernel that rays through a scene need once; afterwards nothing compiles for them.
 
-    tracing: also those that follow a single ray. Returns what the settings come to. Raises SettingsError for
-    settings that make no sense in the scene.
+    tracing: those that follow a single ray, not those of pictures. Returns what the settings come to. Raises
+    SettingsError for settings that make no sense in the scene.
     """
     warm_choice(scene)
     values = meaning.check(scene, settings)
@@ -62,7 +65,10 @@ def warm_up(scene: Scene, settings: Settings, tracing: bool = False) -> Chosen:
         _camera()
         if scene.kind != "cloud" and counts_nearest(values.neighbourhood):
             _nearest_cells()
-        (_cloud if scene.kind == "cloud" else _lattice)()
+        if scene.kind == "cloud":
+            _cloud()
+        else:
+            _lattice(not tracing and assemble.goes_together(scene, settings, values))
         if tracing:
             _tracing()
         assemble.plan_of(scene, settings, values)
@@ -111,11 +117,13 @@ def _small() -> tuple[Cells, Plan]:
 
 
 @functools.cache
-def _lattice() -> None:
+def _lattice(abreast: bool) -> None:
+    """Two surfels, seen by one ray; abreast: by the driver of rays that search side by side."""
     cells, plan = _small()
     beams.write_blocks(_VIEW, cells.empty, 1, 0, 1, np.empty((1, 1)))
-    LatticeTracer(lambda: cells, plan).trace(np.array([_O]), np.array([_D]), np.zeros(1, np.int64), columns_for(1),
-                                     np.empty((2, LOG_WIDTH)))
+    log = NO_LOG if abreast else np.empty((2, LOG_WIDTH))
+    LatticeTracer(lambda: cells, plan, together=abreast).trace(np.array([_O]), np.array([_D]), np.zeros(1, np.int64),
+                                                               columns_for(1), log)
 
 
 @functools.cache

@@ -15,7 +15,7 @@ import numba
 import pytest
 from numba import types
 
-from jaart.core.kernels import packet, records, sums
+from jaart.core.kernels import abreast, moments, packet, records, sums
 from jaart.core.kernels.call import EVALUATE
 
 NEAR, X, _, _, WEIGHTS, _ = EVALUATE.args
@@ -28,6 +28,9 @@ LOOPS: dict[str, tuple[Any, tuple[Any, ...], int]] = {
     "covariance": (sums.covariance_sums, (NEAR, X, WEIGHTS), 6),
     "rays that enter": (packet.enter, (PACKET, *(types.float64,) * 3, LANES), 6),
     "rays that step": (packet.step, (PACKET, *(types.float64,) * 4, LANES), 6),
+    "searches that begin": (abreast.base_on, (PACKET, LANES), 3),
+    "searches that step": (abreast.step, (PACKET, *(types.float64,) * 8, LANES), 12),
+    "moments": (moments.sum_to_fourth, (PACKET, LANES, LANES, LANES), 10),
 }
 
 

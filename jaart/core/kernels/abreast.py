@@ -85,9 +85,8 @@ def forget(p: Array, first: Unsigned) -> None:
 
 
 @kernel(EXACT)
-def begin(p: Array, first: Unsigned) -> int:
-    """Begin a search where the rays of a vector have found a cell; returns how many do."""
-    searching = 0
+def base_on(p: Array, first: Unsigned) -> None:
+    """Write where rays that have found a cell are, from its centre."""
     for i in range(ABREAST):
         lane = first + i
         found = p[STATE + lane] == FOUND
@@ -97,6 +96,16 @@ def begin(p: Array, first: Unsigned) -> int:
         put_vector(p, BASE, lane, found, base)
         put_vector(p, POINT, lane, found, along(base, d, 0.0))
         put_vector(p, CELL, lane, found, cell)
+
+
+@kernel(EXACT)
+def begin(p: Array, first: Unsigned) -> int:
+    """Begin a search where the rays of a vector have found a cell; returns how many do."""
+    base_on(p, first)  # apart: in one loop there would be more columns than the compiler puts into vectors
+    searching = 0
+    for i in range(ABREAST):
+        lane = first + i
+        found = p[STATE + lane] == FOUND
         put_where(p, S, lane, found, 0.0)
         put_where(p, STEPS, lane, found, 0.0)
         put_where(p, ENERGY, lane, found, nan)
