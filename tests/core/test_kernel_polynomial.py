@@ -48,6 +48,14 @@ def test_a_ray_past_the_origin() -> None:
             polynomial.ray_polynomial(c, tuple(d.tolist())), rel=1e-12, abs=1e-12)
 
 
+def test_a_ray_past_the_origin_of_a_quadratic() -> None:
+    rng = np.random.default_rng(19)
+    for _ in range(100):
+        c, base, d = np.append(rng.normal(size=6), np.zeros(9)), tuple(rng.normal(size=3)), tuple(rng.normal(size=3))
+        assert polynomial.line_quadratic(c, base, d) == pytest.approx(polynomial.line_polynomial(c, base, d),
+                                                                      rel=1e-12, abs=1e-12)
+
+
 @pytest.mark.parametrize("patch", [0.0, 1 / 12, 0.13])
 def test_means_are_turned_back_into_the_polynomial(patch: float) -> None:
     rng = np.random.default_rng(18)

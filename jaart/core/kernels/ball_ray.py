@@ -46,7 +46,7 @@ from jaart.core.kernels.records import Array, End, Out, Plan, RayEnd, Sites, Sta
 from jaart.core.kernels.stretch import has_hit
 from jaart.core.kernels.tree import Tree
 from jaart.core.kernels.unowned import unowned
-from jaart.core.kernels.vectors import along, dot
+from jaart.core.kernels.vectors import along, dot, scaled
 
 Ints = NDArray[np.int64]
 #: Promises closer to a hit than this, in h, are of the same sheet.
@@ -55,6 +55,7 @@ _SAME_SHEET = 0.25
 MORE_BALLS, NO_MORE = 0, -1
 _ZERO: Any = np.int64(0)
 _NOT_ASKED: Any = np.int64(-1)
+_NOTHING = (nan, nan, nan)
 #: Farther than this from what is kept at a ball's centre, in h, no origin is on the surface.
 _BESIDE = 0.4
 
@@ -123,13 +124,13 @@ def leaving(balls: Balls, plan: Plan, ball: int, o: Vector, d: Vector, work: Arr
     return leave(surfels_near(balls.sites, (ball, _ZERO, _ZERO)), x, o, d, plan, balls.blur, work, fit)
 
 
-@kernel(STRICT, inline=True)
-def in_units(tree: Tree, o: Vector, h: float) -> Vector:
-    """An origin in units of the cloud's longest edge or of h, whichever is longer."""
+@kernel(STRICT)
+def unit_of(tree: Tree, h: float) -> float:
+    """The cloud's longest edge or h, whichever is longer: origins are judged in it."""
     unit = h
     for axis in range(3):
         unit = max(unit, tree.high[0, axis] - tree.low[0, axis])
-    return o[0] / unit, o[1] / unit, o[2] / unit
+    return unit
 
 
 @kernel(STRICT, inline=True)
@@ -146,21 +147,23 @@ def search_ball(balls: Balls, plan: Plan, guess: Array, start: Start, d: Vector,
 
 
 @kernel(STRICT, inline=True)
-def trace_ball_ray(balls: Balls, plan: Plan, o: Vector, d: Vector, room: Room, listed: Listed, rows: Array,
-                   work: Array, fit: Array, keys: Array, items: Ints) -> RayEnd:
+def trace_ball_ray(balls: Balls, plan: Plan, per_unit: float, o: Vector, d: Vector, room: Room, listed: Listed,
+                   rows: Array, work: Array, fit: Array, keys: Array, items: Ints) -> RayEnd:
     """The first hit of a ray, or how its last start ended; it ends at once where the pool is short of room, or more
     balls are to be listed.
 
-    o, d: origin and unit direction in the local frame; room, listed: its bundle's balls; keys, items: its heap.
+    per_unit: 1 over the unit that origins are judged in; o, d: origin and unit direction in the local frame; room,
+    listed: its bundle's balls; keys, items: its heap.
     """
-    if is_bad(in_units(balls.tree, o, plan.rule.h), d):
+    if is_bad(scaled(o, per_unit), d):
         return no_hit(r.BAD_RAY)
-    inverse = (1.0 / d[0], 1.0 / d[1], 1.0 / d[2])
+    alone = listed.balls == ALONE
+    inverse = (1.0 / d[0], 1.0 / d[1], 1.0 / d[2]) if alone else _NOTHING  # of no use to a bundle
     count = balls.sites.centres.shape[0]
     end, best, visited, number = no_hit(r.BACKGROUND), no_hit(r.BACKGROUND), 0, 0
     found, limit, first, slack = False, inf, inf, _SAME_SHEET * plan.rule.h
     begin = Leave(0.0, _NOT_ASKED, nan)
-    size = (push_root(balls, o, inverse, keys, items) if listed.balls == ALONE
+    size = (push_root(balls, o, inverse, keys, items) if alone
             else push_pierced(balls, room, listed, o, d, keys, items))
     known = horizon(room, listed)
     while True:
@@ -219,11 +222,12 @@ def finished(best: RayEnd, last: RayEnd, visited: int) -> RayEnd:
 
 
 @kernel(STRICT, inline=True)
-def trace_listed(balls: Balls, plan: Plan, o: Vector, d: Vector, cone: Cone, room: Room, listed: Listed, rows: Array,
-                 work: Array, fit: Array, keys: Array, items: Ints) -> tuple[RayEnd, Listed]:
+def trace_listed(balls: Balls, plan: Plan, per_unit: float, o: Vector, d: Vector, cone: Cone, room: Room,
+                 listed: Listed, rows: Array, work: Array, fit: Array, keys: Array, items: Ints
+                 ) -> tuple[RayEnd, Listed]:
     """A ray's end, and what its bundle has listed then."""
     while True:
-        end = trace_ball_ray(balls, plan, o, d, room, listed, rows, work, fit, keys, items)
+        end = trace_ball_ray(balls, plan, per_unit, o, d, room, listed, rows, work, fit, keys, items)
         if end.missing != MORE_BALLS:
             return end, listed
         forget_counts(fit)
@@ -241,7 +245,7 @@ def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array,
     """
     balls, room, log, scratch = unowned_balls(balls), unowned_room(room), unowned(rows), unowned(work)
     fitted, waiting, entries, rays = unowned(fit), unowned(keys), unowned(items), unowned(pixels)
-    at, size, written = begin, MOST, 0
+    at, size, written, per_unit = begin, MOST, 0, 1.0 / unit_of(balls.tree, plan.rule.h)
     while at < rays.shape[0]:
         last = last_of(size, at, rays.shape[0])
         cone = cone_about(origins, directions, rays[at:last], balls.offset)
@@ -249,8 +253,8 @@ def trace_ball_rays(balls: Balls, plan: Plan, origins: Array, directions: Array,
         for i in range(at, last):
             to = rays[i]
             o, d = ray_of(origins, directions, to)
-            end, listed = trace_listed(balls, plan, along(o, balls.offset, -1.0), d, cone, room, listed, log, scratch,
-                                       fitted, waiting, entries)
+            end, listed = trace_listed(balls, plan, per_unit, along(o, balls.offset, -1.0), d, cone, room, listed, log,
+                                       scratch, fitted, waiting, entries)
             if is_short(balls.sites.pool):
                 forget_counts(fitted)
                 return i, 0

@@ -9,7 +9,7 @@ import numpy as np
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.polynomial import line_polynomial
+from jaart.core.kernels.polynomial import line_polynomial, line_quadratic
 from jaart.core.kernels.records import COEFFICIENTS, FIT_SIZE, Array, Value, Vector
 from jaart.core.kernels.roots import first_root_above
 from jaart.core.kernels.vectors import dot, frame
@@ -65,6 +65,8 @@ def meets(row: Array, base: Vector, d: Vector, low: float, high: float, h: float
     if row[DEGREE] == 0.0:
         s = (row[HEIGHT] - dot(n, base)) / dot(n, d)
         return s if low <= s <= high else nan
-    e1, e2 = frame(n)
-    at = (dot(base, e1) / h, dot(base, e2) / h, dot(base, n) / h)
-    return first_root_above(line_polynomial(row[FIT:], at, (dot(d, e1), dot(d, e2), dot(d, n))), low / h, high / h) * h
+    (e1, e2), per_h = frame(n), 1.0 / h
+    at = (dot(base, e1) * per_h, dot(base, e2) * per_h, dot(base, n) * per_h)
+    to = (dot(d, e1), dot(d, e2), dot(d, n))
+    line = line_quadratic(row[FIT:], at, to) if row[DEGREE] <= 2.0 else line_polynomial(row[FIT:], at, to)
+    return first_root_above(line, low * per_h, high * per_h) * h

@@ -104,3 +104,12 @@ def line_polynomial(c: Array, base: Vector, d: Vector) -> Quartic:
     g = _plus(g1, _times_line(g, a, b, 0.0))
     g = _plus(g0, _times_line(g, a, b, -base[2]))
     return g[0], g[1] - d[2], g[2], g[3], g[4]
+
+
+@kernel(STRICT)
+def line_quadratic(c: Array, base: Vector, d: Vector) -> Quartic:
+    """`line_polynomial` of a polynomial of degree 2 or less, in a quarter of the operations."""
+    (u, v, n), (a, b, _) = base, d
+    value = c[0] + u * (c[1] + u * c[3] + v * c[4]) + v * (c[2] + v * c[5]) - n
+    slope = a * (c[1] + 2.0 * (u * c[3]) + v * c[4]) + b * (c[2] + u * c[4] + 2.0 * (v * c[5])) - d[2]
+    return value, slope, a * (a * c[3] + b * c[4]) + b * (b * c[5]), 0.0, 0.0
