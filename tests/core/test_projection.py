@@ -45,7 +45,7 @@ def test_exact_numbers():
 
 
 def test_the_normal_is_that_of_the_source_up_to_its_sign():
-    step = one_step((0.2, -1, 0.3), np.array((1, 2, 2)) / 3, 1.5, (0.9, 0.4, 1.1), np.array((-2, -1, 2)) / 3)
+    step = one_step((0.2, -1, 0.3), np.array((1, 2, 2)) / 3, 1.5, (0.9, 0.4, 1.1), np.array((2, -1, 2)) / 3)
     source = np.cross(step.next_point[0] - step.query[0], step.barycentre[0] - step.query[0])
     source /= np.linalg.norm(source)
     assert abs(plane(step, 0).normal @ source) == pytest.approx(1, abs=1e-12)
