@@ -142,7 +142,7 @@ def _why_alone(scene: Scene, values: Chosen) -> str:
     """Why each ray is searched by itself."""
     if not searches(values):
         return "no ray is searched"
-    return "balls are searched ray by ray" if scene.kind == "cloud" else "only the plain iteration goes so"
+    return "balls are searched ray by ray" if scene.kind == "cloud" else "only plain steps of averaged normals do"
 
 
 def _bounds(settings: Settings, values: Chosen) -> tuple[Stage, ...]:
