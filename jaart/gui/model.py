@@ -269,7 +269,7 @@ class SceneModel(Signals):
         if self.scene is None or self.camera is None or self.picked is None or self.fault is not None:
             return
         what = self.scene, self.settings, self.camera, self.size, self.picked
-        self._worker.submit("trace", lambda job: tasks.ray(*what), self._traced, brief=True)
+        self._worker.submit("trace", lambda job: tasks.ray(job, *what), self._traced, brief=True)
 
     def _traced(self, trace: Trace) -> None:
         same = self.trace is not None and self.trace.pixel == trace.pixel

@@ -88,16 +88,22 @@ def picture(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tu
     """A picture; coarse ones are shown while it is made, and what its settings come to is taken before that."""
     from jaart.core.meaning import check
     from jaart.core.render import render
-    from jaart.core.warm import needs_compile
 
-    if needs_compile(scene, settings):
-        job.say("Compiling kernels that are needed for the first time on this machine; this takes some seconds …")
+    _say_compiling(job, scene, settings)
     values = check(scene, settings)
     job.hand(take, values)
     with told(job.watch):
         hits = render(scene, settings, camera, size, progress=None if dragging else job.progress, cancel=job.cancel,
                       picture=None if dragging else job.partial)
     return Made(hits, _known(scene, settings, values))
+
+
+def _say_compiling(job: Job, scene: Scene, settings: Settings, tracing: bool = False) -> None:
+    """Say why nothing happens for some seconds, the first time that kernels are needed on a machine."""
+    from jaart.core.warm import needs_compile
+
+    if needs_compile(scene, settings, tracing):
+        job.say("Compiling kernels that are needed for the first time on this machine; this takes some seconds …")
 
 
 def _known(scene: Scene, settings: Settings, values: Chosen) -> Known:
@@ -110,11 +116,13 @@ def _known(scene: Scene, settings: Settings, values: Chosen) -> Known:
     return Known(values, spacing, extents.diagonal(scene, settings), notes(scene, settings), sided)
 
 
-def ray(scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int], pixel: tuple[int, int]) -> Trace:
+def ray(job: Job, scene: Scene, settings: Settings, camera: Camera, size: tuple[int, int],
+        pixel: tuple[int, int]) -> Trace:
     """The ray through a pixel with every step."""
     from jaart.core.trace import trace
     from jaart.core.visible import seen
 
+    _say_compiling(job, scene, settings, tracing=True)
     settings = seen(scene, settings, camera, size)
     origins, directions = camera.rays(size, np.array([pixel[0] + pixel[1] * size[0]]))
     return trace(scene, settings, origins[0], directions[0], pixel=pixel)

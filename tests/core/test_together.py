@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 import jaart
-from jaart.core import meaning, prepare
+from jaart.core import meaning, prepare, warm
 from jaart.core.assemble import goes_together, plan_of
 from jaart.core.camera import Camera
 from jaart.core.cell_table import cell_table
 from jaart.core.chosen import chosen
+from jaart.core.kernels import ray, together
 from jaart.core.kernels import records as r
 from jaart.core.kernels.packet import ABREAST, LANES
 from jaart.core.plan import plan
@@ -153,3 +154,14 @@ def test_a_log_is_written_by_a_ray_alone() -> None:
     log, out = np.full((50, r.LOG_WIDTH), np.nan), columns_for(1600)
     written = tracer.trace(origins, directions, np.array([664]), out, log)
     assert written == out.evaluations[664] > 0 and np.isfinite(log[:written, r.T]).all()
+
+
+def test_only_the_driver_that_is_needed_is_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+    monkeypatch.setattr(warm, "compiled", lambda kernel: asked.append(kernel) or True)
+    drivers = {together.trace_together, ray.trace_rays}
+    for settings, tracing, driver in ((PLAIN, False, together.trace_together), (PLAIN, True, ray.trace_rays),
+                                      (PLAIN.replace(search="secant"), False, ray.trace_rays)):
+        asked.clear()
+        assert not warm.needs_compile(BALLS, settings, tracing)
+        assert drivers & set(asked) == {driver}
