@@ -34,9 +34,9 @@ def main() -> None:
 def one(name: str) -> None:
     """Seconds that the kernels of an option take to load after those of the thesis's settings."""
     scene, settings = jaart.load("standard"), jaart.preset("thesis")
-    warm_up(scene, settings, tracing=True)
+    warm_up(scene, settings)
     begin = time.perf_counter()
-    warm_up(scene, settings.replace(**OPTIONS[name]), tracing=True)
+    warm_up(scene, settings.replace(**OPTIONS[name]))
     print(time.perf_counter() - begin)
 
 

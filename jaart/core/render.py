@@ -154,12 +154,12 @@ def _list_job(rays: tuple[Array, Array], any_hit: bool) -> _Job:
 
 
 def unit(directions: Array) -> Array:
-    """Directions (R, 3) of length 1, those that have it to the last bit; NaN where they have none."""
+    """Directions (R, 3) of length 1, those of a camera as they are; NaN where they have none."""
     with np.errstate(divide="ignore", invalid="ignore"):
         scaled = directions / np.abs(directions).max(axis=1, keepdims=True)
         scaled /= np.sqrt((scaled * scaled).sum(axis=1, keepdims=True))
     with np.errstate(over="ignore", invalid="ignore"):
-        already = np.abs((directions * directions).sum(axis=1, keepdims=True) - 1.0) < 1e-15
+        already = np.abs((directions * directions).sum(axis=1, keepdims=True) - 1.0) < 16 * np.finfo(float).eps  # as rounding leaves it
     return np.where(already, directions, scaled)
 
 

@@ -130,13 +130,13 @@ def first_root_above(c: Quartic, low: float, high: float) -> float:
 def nearest_root(c: Quartic, reach: float) -> float:
     """The real root of least |s| with |s| <= reach (finite), NaN when there is none [A §4 step 2].
 
-    Right within a few eps times the root's condition. Of two that are as near it is the negative one.
+    Right within a few eps times the root's condition. Of two that come out as near it is the negative one.
     """
     if c[0] == 0.0:
         return 0.0
     if c[3] == 0.0 and c[4] == 0.0:
         x, y = _quadratic(c[0], c[1], c[2])
-        nearest = x if abs(x) < abs(y) or (abs(x) == abs(y) and x < y) or y != y else y
+        nearest = x if abs(x) < abs(y) or (abs(x) == abs(y) and x < y) else y
         return nearest if abs(nearest) <= reach else nan
     s = 0.0
     for _ in range(_QUICK):
