@@ -134,7 +134,8 @@ def _search(scene: Scene, settings: Settings, values: Chosen) -> tuple[Stage, ..
         stage("search", searches(values), f"{values.search}, {where}",
               "triangles are hit at once" if values.method in MESHES else "discs are hit at once", "method", "search"),
         stage("rays side by side", abreast, "their steps are taken in vectors", _why_alone(scene, values),
-              "method", "search", "normal", "weight", "neighbourhood", "traversal", "bail", "shading_normal"),
+              "method", "search", "normal", "weight", "neighbourhood", "traversal", "bail", "shading_normal",
+              "min_weight", "max_nearest", "max_angle", "min_gap"),
         stage("proof of misses", settings.proof, "bounds of the weights", "none is asked for", "search", "proof"))
 
 
@@ -142,7 +143,7 @@ def _why_alone(scene: Scene, values: Chosen) -> str:
     """Why each ray is searched by itself."""
     if not searches(values):
         return "no ray is searched"
-    return "balls are searched ray by ray" if scene.kind == "cloud" else "only plain steps of averaged normals do"
+    return "balls are searched ray by ray" if scene.kind == "cloud" else "only the plain steps of the source do"
 
 
 def _bounds(settings: Settings, values: Chosen) -> tuple[Stage, ...]:

@@ -153,13 +153,17 @@ def _list_job(rays: tuple[Array, Array], any_hit: bool) -> _Job:
     return _Job(origins, unit(directions), any_hit=any_hit)
 
 
+#: The square of a length is this near to 1 where it was divided by its own length.
+ROUNDED = 16 * float(np.finfo(float).eps)
+
+
 def unit(directions: Array) -> Array:
     """Directions (R, 3) of length 1, those of a camera as they are; NaN where they have none."""
     with np.errstate(divide="ignore", invalid="ignore"):
         scaled = directions / np.abs(directions).max(axis=1, keepdims=True)
         scaled /= np.sqrt((scaled * scaled).sum(axis=1, keepdims=True))
     with np.errstate(over="ignore", invalid="ignore"):
-        already = np.abs((directions * directions).sum(axis=1, keepdims=True) - 1.0) < 16 * np.finfo(float).eps  # as rounding leaves it
+        already = np.abs((directions * directions).sum(axis=1, keepdims=True) - 1.0) < ROUNDED
     return np.where(already, directions, scaled)
 
 

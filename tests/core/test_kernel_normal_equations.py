@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from jaart.core.kernels.normal_equations import eliminate, solve_eliminated
+from jaart.core.kernels.normal_equations import eliminate, solve_eliminated, solve_six
 
 
 def eliminated(a: np.ndarray) -> tuple[float, float, np.ndarray]:
@@ -43,3 +43,33 @@ def test_what_is_no_system_is_said(spoilt: float) -> None:
     a = np.eye(4)
     a[2, 2] = spoilt
     assert eliminated(a)[:2] == (0.0, 0.0)
+
+
+#: The moments of the products of two monomials of degree 2 or less.
+PRODUCTS = [[0, 1, 2, 3, 4, 5], [1, 3, 4, 6, 7, 8], [2, 4, 5, 7, 8, 9], [3, 6, 7, 10, 11, 12], [4, 7, 8, 11, 12, 13],
+            [5, 8, 9, 12, 13, 14]]
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_six_unknowns_are_solved_for_as_by_elimination(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    u, v = rng.normal(size=(2, 20)) * 10.0 ** rng.uniform(-1, 0.5, (2, 1)) + rng.uniform(-2, 2, (2, 1))
+    moments = np.array([(u**(d - b) * v**b).sum() for d in range(5) for b in range(d + 1)])
+    a, right = moments[PRODUCTS], rng.normal(size=6)
+    work = np.concatenate((moments, right))
+    found = solve_six(work, np.uint64(0), np.uint64(15))
+    expected = eliminated(a)
+    assert found == pytest.approx(expected[:2], rel=1e-6)
+    assert (work[:15] == moments).all()
+    np.testing.assert_allclose(a @ work[15:], right, rtol=0, atol=1e-11 * np.abs(a).max() * np.abs(work[15:]).max())
+
+
+@pytest.mark.parametrize(("moment", "value"), [(1, 9.99), (2, 9.99), (6, 9.99), (7, 0.999), (9, 9.99)])
+def test_each_coefficient_that_nearly_depends_on_one_before_it_is_seen(moment: int, value: float) -> None:
+    moments = np.zeros(15)
+    moments[[0, 3, 5, 10, 12, 14]] = 100.0, 1.0, 1.0, 100.0, 1.0, 100.0  # alone, they are far from it
+    far = solve_six(np.append(moments, np.ones(6)), np.uint64(0), np.uint64(15))
+    moments[moment] = value
+    near = solve_six(np.append(moments, np.ones(6)), np.uint64(0), np.uint64(15))
+    assert far[0] > 0.9 and near[0] < 0.01
+    assert near == pytest.approx(eliminated(moments[PRODUCTS])[:2], rel=1e-9)

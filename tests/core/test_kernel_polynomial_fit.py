@@ -179,7 +179,7 @@ def test_points_near_a_curve_are_left_to_reflections() -> None:
 
 def test_a_rough_fit_is_refined() -> None:
     u, v, weight = disc(64, 25)
-    u, v = u + 3.0, v - 2.0  # far from the origin its monomials are nearly dependent
+    u, v = u + 6.0, v - 4.0  # far from the origin its monomials are nearly dependent: unrefined it is off by 1e-11
     height, c = np.sin(u) * v, np.zeros(15)
     assert polynomial_fit.by_moments(worked(64, u, v, height, weight), np.uint64(64), 2, c)
     assert c[:6] == pytest.approx(exact(u, v, height, weight, 2), abs=1e-12)
@@ -189,3 +189,13 @@ def test_a_rough_fit_is_refined() -> None:
                                                      (24, 4, True), (41, 2, False)])
 def test_normal_equations_need_room_and_whole_vectors(rows: int, degree: int, has: bool) -> None:
     assert polynomial_fit.has_room(np.uint64(rows), degree) is has
+
+
+@pytest.mark.parametrize(("size", "used"), [(1e-2, 2), (1e-4, 1), (1e-8, 0)])
+def test_points_much_closer_than_h_lower_the_degree_as_by_reflections(size: float, used: int) -> None:
+    u, v, weight = disc(48, 26)
+    found = fitted(size * u, size * v, 1.0 + u, weight, 2)
+    assert found[0] == used
+    without_vectors = slice(0, 47)  # 47 rows are fitted by reflections
+    assert fitted(size * u[without_vectors], size * v[without_vectors], u[without_vectors], weight[without_vectors],
+                  2)[0] == used

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import jaart
-from jaart.core import meaning, prepare, warm
+from jaart.core import meaning, places, prepare, warm
 from jaart.core.assemble import goes_together, plan_of
 from jaart.core.camera import Camera
 from jaart.core.cell_table import cell_table
@@ -17,6 +17,7 @@ from jaart.core.chosen import chosen
 from jaart.core.kernels import ray, together
 from jaart.core.kernels import records as r
 from jaart.core.kernels.packet import ABREAST, LANES
+from jaart.core.kernels.pinhole import EDGE
 from jaart.core.plan import plan
 from jaart.core.records import STATUS_NAMES
 from jaart.core.render import render
@@ -25,7 +26,7 @@ from jaart.core.settings import Settings, preset
 from jaart.core.surfels import Surfels
 from jaart.core.tiles import columns_for
 from jaart.core.trace import trace
-from jaart.core.tracers import LatticeTracer
+from jaart.core.tracers import NO_BEGINS, LatticeTracer
 from tests.core.test_packet import BALLS, CAMERAS
 
 PLAIN = Settings(search="iterate", normal="surfel", neighbourhood="cell_ball")
@@ -50,11 +51,12 @@ def ended(settings: Settings, scene: Scene, origins: np.ndarray, directions: np.
     return ended_in(tracer, origins, directions)
 
 
-def ended_in(tracer: LatticeTracer, origins: np.ndarray, directions: np.ndarray) -> tuple[r.Out, r.Out]:
-    """The same for rays through a lattice that is at hand."""
-    made, alone = columns_for(len(origins)), columns_for(len(origins))
-    tracer.trace(origins, directions, np.arange(len(origins)), made)
-    replace(tracer, together=False).trace(origins, directions, np.arange(len(origins)), alone)
+def ended_in(tracer: LatticeTracer, origins: np.ndarray, directions: np.ndarray,
+             begins: np.ndarray = NO_BEGINS) -> tuple[r.Out, r.Out]:
+    """The same for rays through a lattice that is at hand; begins: t before which each meets nothing."""
+    made, alone, rays = columns_for(len(origins)), columns_for(len(origins)), np.arange(len(origins))
+    tracer.trace(origins, directions, rays, made, begins=begins)
+    replace(tracer, together=False).trace(origins, directions, rays, alone, begins=begins)
     return made, alone
 
 
@@ -73,6 +75,27 @@ def test_each_ray_ends_as_it_does_alone(name: str, camera: str) -> None:
     assert_equal(made, alone)
     seen = {STATUS_NAMES[s] for s in np.unique(made.status)}
     assert camera != "from outside" or {STATUS_NAMES[s] for s in states} <= seen, seen
+
+
+@pytest.mark.parametrize("name", ["plain", "narrow weights"])
+def test_each_ray_ends_as_it_does_alone_from_where_its_block_begins(name: str) -> None:
+    camera, size = CAMERAS["from outside"], (48, 40)
+    tracer = prepare.prepared(BALLS, PLAIN.replace(**ENDS[name][0])).tracer
+    begins = tracer.blocks(camera.view(size)).repeat(EDGE, axis=0).repeat(EDGE, axis=1).ravel()
+    assert isinstance(tracer, LatticeTracer) and (begins > 0.0).any()
+    assert_equal(*ended_in(tracer, *camera.rays(size), begins))
+
+
+@pytest.mark.parametrize("camera", CAMERAS)
+def test_where_room_is_short_they_are_traced_anew(camera: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also those of a packet that go alone, from inside and along faces."""
+    rays = CAMERAS[camera].rays((23, 19))
+    roomy, _ = ended(PLAIN, Scene("roomy", model=BALLS.model), *rays)
+    monkeypatch.setattr(places, "CHUNK", 8)
+    monkeypatch.setattr(places, "SURFELS", 1)
+    tight = Scene("tight", model=BALLS.model)
+    assert_equal(ended(PLAIN, tight, *rays)[0], roomy)
+    assert places.places_of(prepare.prepared(tight, PLAIN).tracer.sites).kept.chunks > 50
 
 
 @pytest.mark.parametrize("count", [1, 2, int(ABREAST) - 1, int(ABREAST), int(ABREAST) + 1, int(LANES), int(LANES) + 3])
@@ -103,6 +126,19 @@ def test_normals_that_cancel_are_said_and_have_no_step() -> None:
     assert_equal(made, alone)
     undefined = made.status == r.UNDEFINED_NORMAL
     assert undefined.sum() > 20 and np.isnan(made.energy[undefined]).all()
+
+
+def test_rays_along_the_plane_are_said_to_be_parallel() -> None:
+    scene = Scene("a surfel", levels=np.zeros((6, 6, 6)))
+    values = chosen(scene, PLAIN)
+    found = Surfels(np.array([[2, 2, 2]], np.int32), np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]))
+    cells, rays = cell_table(found, (6, 6, 6), values, 1), plan_of(scene, PLAIN, values)
+    angle, height = np.linspace(-0.1, 0.1, 40), np.linspace(2.1, 2.9, 40)
+    origins = np.column_stack((np.full(40, -3.0), np.full(40, 2.5), height))
+    directions = np.column_stack((np.cos(angle), np.sin(angle), np.zeros(40)))
+    made, alone = ended_in(LatticeTracer(lambda: cells, rays, together=True), origins, directions)
+    assert_equal(made, alone)
+    assert (made.status == r.PARALLEL).sum() > 20
 
 
 def test_rays_without_meaning_disturb_no_other() -> None:
@@ -137,7 +173,8 @@ NOT_PLAIN: tuple[dict[str, Any], ...] = (
 def test_what_is_not_plain_goes_alone_and_the_plan_says_so(values: dict[str, Any]) -> None:
     settings = PLAIN.replace(**values)
     assert not goes_together(BALLS, settings, meaning.check(BALLS, settings))
-    assert not plan(BALLS, settings)["rays side by side"].runs
+    stage = plan(BALLS, settings)["rays side by side"]
+    assert not stage.runs and set(values) <= set(stage.settings)
     tracer = prepare.prepared(BALLS, settings).tracer
     assert not isinstance(tracer, LatticeTracer) or not tracer.together
 

@@ -23,8 +23,9 @@ _ONE: Unsigned = np.uint64(1)
 def eliminate(work: Array, a: Unsigned, n: Unsigned, per_pivot: Unsigned) -> tuple[float, float]:
     """Turn a matrix into U; returns the least square of a sine, and the least pivot as a share of the largest.
 
-    The sine is that of the angle between a column of the system and those before it; rounding grows by up to the product
-    of all 1/sin². Both are 0 where a column depends on others, or is no number. per_pivot: room for n numbers, 1/D.
+    The sine is that of the angle between a column of the system and those before it; rounding grows by up to the
+    product of all 1/sin². Both are 0 where a column depends on others, or is no number. per_pivot: room for n numbers,
+    1/D.
     """
     sine, least, largest = inf, inf, 0.0
     for k in range(n):
