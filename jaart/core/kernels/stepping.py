@@ -14,6 +14,7 @@ import numpy as np
 from jaart.core.kernels import records as r
 from jaart.core.kernels.accept import ended, more
 from jaart.core.kernels.call import accept_at, approach_at, evaluate_at
+from jaart.core.kernels.dip import nothing_known, passes_by, tells_sides, with_look
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.log import write_step
 from jaart.core.kernels.near import surfels_near
@@ -79,10 +80,12 @@ def steps_from(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector,
                work: Array, fit: Array) -> End:
     """Search the surface from a start: step until the step is short [T 2.14], or |f| is [A §4].
 
+    A search for a root ends, too, where the ray passes by the surface.
+
     d: unit direction; rows: (L, LOG_WIDTH) log, L = 0 for none; row: where to write next; work, fit: scratch.
     """
     s, s_before, ahead_before, f_before, step, off = start.s, nan, nan, inf, nan, nan
-    spent = Spent(_NONE, _NONE, _NONE, _NONE)
+    spent, dip, sided = Spent(_NONE, _NONE, _NONE, _NONE), nothing_known(), tells_sides(how, rule)
     want = r.WITH_GRADIENT if how.kind == r.NEWTON else r.QUICK
     cell, x = start.cell, along(start.base, d, s)
     fit[r.STARTS] += 1.0
@@ -105,6 +108,10 @@ def steps_from(sites: Sites, rule: Rule, how: Search, bounds: Bounds, d: Vector,
         state = state_before(v, slope, how, f_before)
         if state != r.CONTINUE:
             return ended(state, step, off, spent, nan)
+        if sided:
+            dip = with_look(dip, s, v.f)
+            if passes_by(dip):
+                return ended(r.BACKGROUND, step, off, spent, nan)
         s_before, ahead_before, f_before = s, ahead, abs(v.f)
         s += step
         to_cell, to, inside = located(sites, start, d, s)
