@@ -111,4 +111,4 @@ def test_a_followed_ray_says_that_it_passes_by() -> None:
     i = np.flatnonzero((hits.evaluations > 2) & (hits.starts == 1) & (hits.status == STATUS["background"]))[0]
     told = trace(SCENE, settings, hits.origin[i], hits.direction[i])
     assert told.status == "background" and told.outcome[-1] == "background"
-    assert told.steps == hits.evaluations[i] and np.isfinite(told.normal[-1]).all()
+    assert told.steps == hits.evaluations[i] and np.isfinite(told.step_normal).all()
