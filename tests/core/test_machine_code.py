@@ -15,7 +15,7 @@ import numba
 import pytest
 from numba import types
 
-from jaart.core.kernels import abreast, moments, packet, records, sums
+from jaart.core.kernels import abreast, blocks, moments, packet, records, sums
 from jaart.core.kernels.call import EVALUATE
 
 NEAR, X, _, _, WEIGHTS, _ = EVALUATE.args
@@ -72,7 +72,8 @@ def all_codes() -> dict[str, str]:
     """The machine code of all loops."""
     codes = {name: code_of(kernel.py_func, signature, kernel.targetoptions["fastmath"])
              for name, (kernel, signature, _) in LOOPS.items()}
-    return codes | {"chain": code_of(chain, (PACKET,), {"contract"})}
+    ahead = code_of(blocks.fetch_centre.py_func, (types.int64,), {"contract"})
+    return codes | {"chain": code_of(chain, (PACKET,), {"contract"}), "ahead": ahead}
 
 
 @pytest.fixture(scope="module")
@@ -95,3 +96,9 @@ def test_loops_are_compiled_to_vectors(name: str, codes: dict[str, str]) -> None
 def test_a_loop_in_which_each_step_needs_the_last_is_none(codes: dict[str, str]) -> None:
     """What the pattern finds is not there in a loop that cannot be a vector: the check can fail."""
     assert codes["chain"] and not re.findall(packed(), codes["chain"])
+
+
+def test_what_will_be_read_is_fetched_ahead(codes: dict[str, str]) -> None:
+    if machine() not in ("x86_64", "amd64", *ARM):
+        pytest.skip(f"how memory is fetched ahead is not known on {machine()}")
+    assert len(re.findall(r"\b(?:prefetcht0|prfm)\b", codes["ahead"])) == 3

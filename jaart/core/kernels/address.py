@@ -1,13 +1,15 @@
 """Arrays that begin at an address, and numbers that two threads share.
 
 What stands at an address is not counted, so whoever hands the address out keeps the memory alive. A number that tells
-others where something lies is written after all that lies there, and read before it, on every processor.
+others where something lies is written after all that lies there, and read before it, on every processor. What is
+fetched ahead is read sooner; nothing else changes by it.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
+from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
@@ -81,3 +83,18 @@ def set_once(typing_context: Any, numbers: Any, index: Any, value: Any) -> Any:
                                                      "acq_rel", "acquire"), 0)
 
     return types.int64(numbers, types.int64, types.int64), generate
+
+
+@intrinsic
+def fetch(typing_context: Any, numbers: Any, index: Any) -> Any:
+    """Have a number of an array, counted through all its rows, at hand soon; it may lie beyond the end."""
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        byte, word = ir.IntType(8).as_pointer(), ir.IntType(32)
+        kind = ir.FunctionType(ir.VoidType(), (byte, word, word, word))
+        ask = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0i8")
+        to_read, nearest, data = (ir.Constant(word, n) for n in (0, 3, 1))
+        place = builder.bitcast(_place(context, builder, numbers, *arguments), byte)
+        builder.call(ask, (place, to_read, nearest, data))
+        return context.get_dummy_value()
+
+    return types.void(numbers, types.int64), generate

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.address import floats_at, load
-from jaart.core.kernels.blocks import FITTED, GATHERER, KEPT, MORE, is_short, kept_in, publish, take_back
+from jaart.core.kernels.blocks import FITTED, GATHERER, KEPT, MORE, fetch_surfels, is_short, kept_in, publish, take_back
 from jaart.core.kernels.bundle import (
     ALONE,
     MOST,
@@ -187,6 +187,7 @@ def trace_ball_ray(balls: Balls, plan: Plan, per_unit: float, o: Vector, d: Vect
         if item < count and balls.stretches == 0 and balls.any_hit == 0:
             size = push(keys, items, size, start.t + start.s, count + ball)
             continue
+        fetch_surfels(load(balls.sites.slots, ball))
         one, end = search_ball(balls, plan, guess, start, d, rows, end, work, fit)
         number += 1
         order = one.t if one.f != one.f else one.f  # of a mean of points what it was placed by

@@ -12,7 +12,7 @@ back.
 
 from __future__ import annotations
 
-from jaart.core.kernels.address import set_once, wholes_at
+from jaart.core.kernels.address import fetch, set_once, wholes_at
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.records import Array, Numbers
 
@@ -27,6 +27,8 @@ from jaart.core.kernels.records import Array, Numbers
 #: Words of a pool.
 POOL_SIZE = SOURCE + 12
 _WORD = 8
+#: Words that come from memory at a time.
+LINE = 8
 #: A column is as long as a multiple of this, and what fills it up is so far from every centre.
 VECTOR, NOWHERE = 8, 1e120
 
@@ -41,6 +43,20 @@ def is_short(pool: Numbers) -> bool:
 def kept_in(address: int) -> int:
     """Where in a block begins what it keeps of the place's centre."""
     return address + _WORD
+
+
+@kernel(STRICT, inline=True)
+def fetch_centre(address: int) -> None:
+    """Fetch ahead what a block keeps of its place's centre, up to a polynomial of degree 2."""
+    for line in range(3):
+        fetch(wholes_at(address, 1), line * LINE)
+
+
+@kernel(STRICT, inline=True)
+def fetch_surfels(address: int) -> None:
+    """Fetch ahead most of what a block of usual size holds of surfels."""
+    for line in range(4, 36):
+        fetch(wholes_at(address, 1), line * LINE)
 
 
 @kernel(STRICT)

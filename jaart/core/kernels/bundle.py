@@ -16,9 +16,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from jaart.core.kernels.address import fetch, load
+from jaart.core.kernels.blocks import fetch_centre
 from jaart.core.kernels.heap import pop, push
-from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.pierce import LANES, LEAF_ROOM, Balls, push_ball
+from jaart.core.kernels.jit import EXACT, STRICT, kernel
+from jaart.core.kernels.pierce import LANES, LEAF_ROOM, Balls, chord_of, push_ball
 from jaart.core.kernels.records import Array, Unsigned, Vector
 from jaart.core.kernels.tree import BALL_LEAF, Tree, span_of
 from jaart.core.kernels.unowned import unowned
@@ -195,16 +197,42 @@ def test_all(columns: Array, count: Unsigned, o: Vector, d: Vector) -> None:
         columns[INSIDE + i] = inside if foot >= -radius else -1.0
 
 
+@kernel(EXACT, inline=True)
+def write_entries(columns: Array, pierced: Ints, count: int, o: Vector, d: Vector) -> None:
+    """Write into INSIDE where a ray enters those balls that it pierces; infinity for those behind its origin."""
+    for i in range(np.uint64(count)):
+        at = np.uint64(pierced[i])
+        foot, half, _ = chord_of((columns[X + at], columns[Y + at], columns[Z + at]), columns[RADIUS + at], o, d)
+        columns[INSIDE + i] = max(foot - half, 0.0) if foot + half > 0.0 else inf
+
+
+@kernel(STRICT, inline=True)
+def fetch_ball(balls: Balls, ball: int) -> None:
+    """Fetch ahead what says where a ball is and what it promises."""
+    fetch(balls.sites.centres, 3 * ball)
+    fetch(balls.radii, ball)
+    fetch_centre(load(balls.sites.slots, ball))
+
+
 @kernel(STRICT, inline=True)
 def push_pierced(balls: Balls, room: Room, listed: Listed, o: Vector, d: Vector, keys: Array, items: Ints) -> int:
     """Begin with those of a bundle's balls that a ray pierces; returns the heap's size."""
     test_all(room.columns, np.uint64(listed.balls), o, d)
     pierced = size = 0
     for i in range(listed.balls):  # without a branch, which nobody could foresee
-        room.pierced[pierced] = room.numbers[i]
+        room.pierced[pierced] = i
         pierced += 1 if room.columns[INSIDE + np.uint64(i)] >= 0.0 else 0
     for i in range(pierced):
-        size = push_ball(balls, room.pierced[i], o, d, keys, items, size)
+        fetch_ball(balls, room.numbers[room.pierced[i]])
+    if balls.any_hit == 1:
+        for i in range(pierced):
+            size = push_ball(balls, room.numbers[room.pierced[i]], o, d, keys, items, size)
+        return size
+    write_entries(room.columns, room.pierced, pierced, o, d)
+    for i in range(pierced):
+        enter = room.columns[INSIDE + np.uint64(i)]
+        if enter < inf:
+            size = push(keys, items, size, enter, room.numbers[room.pierced[i]])
     return size
 
 

@@ -45,15 +45,22 @@ class Balls(NamedTuple):
 
 
 @kernel(EXACT, inline=True)
-def chord(balls: Balls, ball: int, o: Vector, d: Vector) -> tuple[float, float, float]:
+def chord_of(centre: Vector, radius: float, o: Vector, d: Vector) -> tuple[float, float, float]:
     """Distance t of the ray's foot point on a ball's centre, half the chord, NaN for none, and how far the ray passes
     from the centre; the same bits wherever it is asked for.
     """
-    c = (balls.sites.centres[ball, 0] - o[0], balls.sites.centres[ball, 1] - o[1], balls.sites.centres[ball, 2] - o[2])
-    foot, radius = dot(c, d), balls.radii[ball]
+    c = (centre[0] - o[0], centre[1] - o[1], centre[2] - o[2])
+    foot = dot(c, d)
     aside = along(c, d, -foot)
     distance = sqrt(dot(aside, aside))
     return foot, sqrt((radius - distance) * (radius + distance)) if distance <= radius else nan, distance
+
+
+@kernel(EXACT, inline=True)
+def chord(balls: Balls, ball: int, o: Vector, d: Vector) -> tuple[float, float, float]:
+    """`chord_of` a ball by its number."""
+    centres = balls.sites.centres
+    return chord_of((centres[ball, 0], centres[ball, 1], centres[ball, 2]), balls.radii[ball], o, d)
 
 
 @kernel(STRICT, inline=True)
