@@ -20,10 +20,10 @@ from jaart.gui.main_window import MainWindow
 LEFT = Qt.MouseButton.LeftButton
 
 
-def pick_a_hit(qtbot, window):
-    """Click the middle one of the pixels that hit."""
+def pick_a_hit(qtbot, window, steps=1):
+    """Click the middle one of the pixels that hit in at least so many steps."""
     model = window.model
-    hits = np.argwhere(model.hits.hit.reshape(model.size[::-1]))
+    hits = np.argwhere((model.hits.hit & (model.hits.iterations >= steps)).reshape(model.size[::-1]))
     y, x = (int(n) for n in hits[len(hits) // 2])
     QTest.mouseClick(window.view, LEFT, pos=window.view.place_of((x, y)).toPoint())
     settle(qtbot, model)
@@ -40,7 +40,7 @@ def test_a_click_on_a_pixel_is_followed_by_every_panel(qtbot, window):
 
 
 def test_keys_step_through_the_iterations(qtbot, window):
-    pick_a_hit(qtbot, window)
+    pick_a_hit(qtbot, window, steps=3)
     panel, model = window.docks["2D projector"].panel, window.model
     model.set_step(0)
     panel.setFocus()
