@@ -113,7 +113,7 @@ def compared(name: str, count: int) -> dict[tuple[str, str], Count]:
     for kind, make in (("anywhere", anywhere), ("grazing", grazing)):
         rays = make(scene, chosen, count // 2, 5)
         truth = looked(scene, chosen, *rays)
-        for search in ("safe", "iterate"):
+        for search in ("safe", "iterate", "secant"):
             found[kind, search] = counted(scene, chosen.replace(search=search), rays, truth)
     return found
 
