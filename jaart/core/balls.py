@@ -69,7 +69,7 @@ class CloudTracer:
                  self.cloud.centres, self.cloud.reach)
         source = [len(grid.keys), *(address(array) for array in alive)]
         return Places((0, 0, 0), self.cloud.centres, slots, gather_ball, source, 6 if len(grid.normals) else 3,
-                      GUESS_WIDTH if self.guessing else 0, alive, "the neighbourhoods of balls").sites
+                      GUESS_WIDTH if self.guessing else 0, alive, "the neighbourhoods of balls", listed=False).sites
 
     @property
     def offset(self) -> Array:

@@ -19,7 +19,7 @@ from jaart.core import memory
 from jaart.core.addresses import address_of
 from jaart.core.bricks import brick_slots, bricks_of, slot_numbers
 from jaart.core.errors import NoRoom
-from jaart.core.kernels import blocks, call, cell_gather, near
+from jaart.core.kernels import blocks, call, cell_gather, gather, near
 from jaart.core.kernels.guess import GUESS_WIDTH
 from jaart.core.kernels.records import FIT_SIZE, Cell, Sites
 from jaart.core.scene import Array
@@ -91,18 +91,19 @@ class Places:
 
     shape, centres, slots: as of Sites; gatherer: kernel; source: numbers that it needs, `address` of arrays among them;
     parts: columns of a block; kept: numbers kept of a centre; alive: the arrays whose addresses are in the source;
-    what: names in an error what asks for so much memory.
+    what: names in an error what asks for so much memory; listed: whether blocks keep ids, else they are found anew.
     """
 
     def __init__(self, shape: Cell, centres: Array, slots: Ints, gatherer: Any, source: list[int], parts: int,
-                 kept: int, alive: tuple[Any, ...], what: str) -> None:
+                 kept: int, alive: tuple[Any, ...], what: str, listed: bool = True) -> None:
         self._numbers, self._what, self.alive = np.zeros(blocks.POOL_SIZE, np.int64), what, alive
         self.chunks: list[Array] = [np.zeros(_EMPTY_WORDS)]
         self._pools: list[Pool] = []
         self._free: list[Pool] = []
         self._lock = Lock()
         first = {blocks.GATHERER: address_of(gatherer, call.GATHER), blocks.EMPTY: address(self.chunks[0]),
-                 blocks.ROOM: np.iinfo(np.int64).max, blocks.PARTS: parts, blocks.KEPT: kept}
+                 blocks.ROOM: np.iinfo(np.int64).max, blocks.PARTS: parts, blocks.KEPT: kept,
+                 blocks.LISTED: int(listed)}
         for word, value in first.items():
             self._numbers[word] = value
         self._numbers[blocks.SOURCE:blocks.SOURCE + len(source)] = source
@@ -193,6 +194,8 @@ def listed_near(sites: Sites, places: Ints) -> tuple[Ints, NDArray[np.int32], Ar
     ids, columns = np.empty(first[-1], np.int32), np.empty(int(sites.pool[blocks.PARTS]) * first[-1])
     if len(ids):
         served(sites, lambda own, pool: near.read(own, asked, first, ids, columns))
+    if not sites.pool[blocks.LISTED]:
+        gather.read_ids(sites.pool, np.ascontiguousarray(asked[:, 0]), first, ids)
     return first, ids, columns
 
 

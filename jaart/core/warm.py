@@ -71,6 +71,8 @@ def warm_up(scene: Scene, settings: Settings, tracing: bool = False) -> Chosen:
             _lattice(not tracing and assemble.goes_together(scene, settings, values))
         if tracing:
             _tracing()
+        if tracing and scene.kind == "cloud":
+            _balls_listed()
         assemble.plan_of(scene, settings, values)
         if values.method in MESHES:
             mesh_tracer.warm_up(values.method, *_small())
@@ -127,13 +129,24 @@ def _lattice(abreast: bool) -> None:
 
 
 @functools.cache
-def _cloud() -> None:
-    """Eight points on a plane, seen once from above: promises, lists and a search."""
+def _small_cloud() -> CloudTracer:
+    """Nine points on a plane."""
     points = np.array([(x, y, 0.1 * x * y) for x in (0.0, 1.0, 2.0) for y in (0.0, 1.0, 2.0)])
     scene = Scene("small", points=points, normals=np.tile((0.0, 0.0, 1.0), (9, 1)))
     settings = Settings(h=Length(1.0))
-    made = CloudTracer(cloud_of(scene, settings, chosen(scene, settings)), _small()[1], False, True)
-    made.trace(np.array([_O]), np.array([_D]), np.zeros(1, np.int64), columns_for(1), np.empty((2, LOG_WIDTH)))
+    return CloudTracer(cloud_of(scene, settings, chosen(scene, settings)), _small()[1], False, True)
+
+
+@functools.cache
+def _cloud() -> None:
+    """The small cloud, seen once from above: promises, lists and a search."""
+    _small_cloud().trace(np.array([_O]), np.array([_D]), np.zeros(1, np.int64), columns_for(1),
+                         np.empty((2, LOG_WIDTH)))
+
+
+@functools.cache
+def _balls_listed() -> None:
+    neighbours_of(_small_cloud().sites, (0, 0, 0))
 
 
 @functools.cache

@@ -121,7 +121,7 @@ def test_what_is_kept_is_counted(name: str) -> None:
         assert kept.fits == 0 if name == "lattice thesis" else 0 < kept.fits <= kept.gathered
     asked = np.flatnonzero(sites.slots)[:, None] * [1, 0, 0] if cloud else asked_cells(sites)
     sizes = np.diff(listed_near(sites, asked)[0])
-    words = 1 + GUESS_WIDTH * cloud + (sizes + 1) // 2 + 6 * (-(-sizes // 8) * 8)
+    words = 1 + GUESS_WIDTH * cloud + (not cloud) * ((sizes + 1) // 2) + 6 * (-(-sizes // 8) * 8)
     assert kept.block_bytes == 8 * words[(sizes > 0) | cloud].sum()
     again = render(scene, settings, size=SIZE)
     assert again.hit.any() and places_of(sites).kept == kept

@@ -1,9 +1,9 @@
 """What is gathered near a place lies in a block; blocks lie one behind another in chunks, each filled by one thread.
 
-A block: how many surfels; what is kept of the place's centre, where anything is; their ids; then x, y, z of all of
-them relative to the centre, and the parts of the normals where there are any, each contiguous. Each column is filled up
-to whole vectors with surfels that count nothing: sums may run over them, and no loop over what a vector leaves is
-needed. They are so far away that their weight is 3e-308, which no sum that counts can tell from 0.
+A block: how many surfels; what is kept of the place's centre, where anything is; their ids, where these are kept; then
+x, y, z of all of them relative to the centre, and the parts of the normals where there are any, each contiguous. Each
+column is filled up to whole vectors with surfels that count nothing: sums may run over them, and no loop over what a
+vector leaves is needed. They are so far away that their weight is 3e-308, which no sum that counts can tell from 0.
 
 A thread has a pool of numbers that say where its next block goes, what it lacked, and what blocks are gathered from.
 Two threads that gather the same place at once write two equal blocks; the first one's stays, the other takes its own
@@ -20,10 +20,10 @@ from jaart.core.kernels.records import Array, Numbers
 #: block goes; LEFT: bytes from there on; NEED: of a block that did not fit; ROOM: surfels that the scratch is for;
 #: MORE: of a place that has more; HEAP: 1 where a heap was full; GATHERED, FITTED: places so far, and those whose
 #: centre is kept; BYTES: of all blocks; PARTS: columns; KEPT: numbers kept of a centre; ASKED, ROWS: addresses of
-#: what says whether a cell's centre is kept, and of what is (first_guess.py); from SOURCE on: what the gatherer needs
-#: to know.
-(GATHERER, EMPTY, AT, LEFT, NEED, ROOM, MORE, HEAP, GATHERED, FITTED, BYTES, PARTS, KEPT, ASKED, ROWS,
- SOURCE) = range(16)
+#: what says whether a cell's centre is kept, and of what is (first_guess.py); LISTED: 1 where ids are kept, else 0;
+#: from SOURCE on: what the gatherer needs to know.
+(GATHERER, EMPTY, AT, LEFT, NEED, ROOM, MORE, HEAP, GATHERED, FITTED, BYTES, PARTS, KEPT, ASKED, ROWS, LISTED,
+ SOURCE) = range(17)
 #: Words of a pool.
 POOL_SIZE = SOURCE + 12
 _WORD = 8
@@ -68,13 +68,20 @@ def ids_in(pool: Numbers, address: int) -> int:
 @kernel(STRICT)
 def columns_in(pool: Numbers, address: int, size: int) -> int:
     """Where in a block of so many surfels the columns begin."""
-    return address + _WORD * (1 + pool[KEPT] + (size + 1) // 2)
+    return address + _WORD * (1 + pool[KEPT] + pool[LISTED] * ((size + 1) // 2))
 
 
 @kernel(STRICT)
 def free_ids(pool: Numbers) -> int:
     """How many ids the next block has room for at most."""
     return max((pool[LEFT] - _WORD * (1 + pool[KEPT])) // 4, 0)
+
+
+@kernel(STRICT)
+def spare_ids(pool: Numbers) -> tuple[int, int]:
+    """Address of the farther half of this thread's room, where ids that are not kept are written down, and how many."""
+    count = pool[LEFT] // _WORD
+    return pool[AT] + pool[LEFT] - 4 * count, count
 
 
 @kernel(STRICT)
@@ -97,9 +104,10 @@ def lay(pool: Numbers, size: int) -> int:
     """Address of the next block, which has so many surfels; 0 where there is no room."""
     if size == 0 and pool[KEPT] == 0:
         return pool[EMPTY]
-    length = _WORD * (1 + pool[KEPT] + (size + 1) // 2 + pool[PARTS] * wide_of(size))
-    if length > pool[LEFT]:
-        pool[NEED] = max(pool[NEED], length)
+    length = columns_in(pool, 0, size) + _WORD * pool[PARTS] * wide_of(size)
+    spare = 0 if pool[LISTED] == 1 else 4 * spare_ids(pool)[1]
+    if length > pool[LEFT] - spare:
+        pool[NEED] = max(pool[NEED], length if pool[LISTED] == 1 else 2 * length)
         return 0
     address = pool[AT]
     wholes_at(address, 1)[0] = size

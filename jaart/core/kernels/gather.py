@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels.address import floats_at, ids_at, points_at, wholes_at
-from jaart.core.kernels.blocks import AT, PARTS, SOURCE, columns_in, fill_up, free_ids, ids_in, lay, wide_of
+from jaart.core.kernels.blocks import PARTS, SOURCE, columns_in, fill_up, lay, spare_ids, wide_of
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.records import Array, Cell, Vector
 
@@ -121,11 +121,13 @@ def gather_ball(pool: Ints, cell: Cell) -> int:
     grid, ball = grid_of(pool), cell[0]
     at, reach = points_at(pool[CENTRES], ball + 1), floats_at(pool[REACH], ball + 1)
     centre = (at[ball, 0], at[ball, 1], at[ball, 2])
-    size = find(grid, centre, reach[ball], ids_at(ids_in(pool, pool[AT]), free_ids(pool)))
+    spare, most = spare_ids(pool)
+    ids = ids_at(spare, most)
+    size = find(grid, centre, reach[ball], ids)
     address = lay(pool, size)
     if address == 0:
         return 0
-    ids, parts, wide = ids_at(ids_in(pool, address), size), pool[PARTS], wide_of(size)
+    parts, wide = pool[PARTS], wide_of(size)
     columns = floats_at(columns_in(pool, address, size), parts * wide)
     fill_up(columns, parts, size)
     for a in range(size):
@@ -134,5 +136,19 @@ def gather_ball(pool: Ints, cell: Cell) -> int:
             columns[axis * wide + a] = grid.points[one, axis] - centre[axis]
             if parts == 6:
                 columns[(3 + axis) * wide + a] = grid.normals[one, axis]
-        ids[a] = grid.ids[one]
     return address
+
+
+@kernel(STRICT, entry=True)
+def read_ids(pool: Ints, balls: Ints, first: Ints, ids: NDArray[np.int32]) -> None:
+    """Write the ids of the points near some balls (P,), in the order that they are gathered in.
+
+    first: (P + 1,) where each one's begin in ids.
+    """
+    grid = grid_of(pool)
+    for p in range(balls.shape[0]):
+        ball, own = balls[p], ids[first[p]:first[p + 1]]
+        at, reach = points_at(pool[CENTRES], ball + 1), floats_at(pool[REACH], ball + 1)
+        find(grid, (at[ball, 0], at[ball, 1], at[ball, 2]), reach[ball], own)
+        for a in range(own.shape[0]):
+            own[a] = grid.ids[own[a]]

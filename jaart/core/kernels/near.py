@@ -87,7 +87,7 @@ def read(sites: Sites, places: NDArray[np.int64], first: Numbers, ids: NDArray[n
     """Gather what is near some places (P, 3), and count it or copy it.
 
     first: (P + 1,) where each one's begin in ids, and as many times that in columns as there are; ids: (0,) to
-    put the number of place p's surfels into first[p + 1].
+    put the number of place p's surfels into first[p + 1]; they are written where blocks keep them.
     """
     pool = sites.pool
     for p in range(places.shape[0]):
@@ -101,6 +101,7 @@ def read(sites: Sites, places: NDArray[np.int64], first: Numbers, ids: NDArray[n
         own, wide = ids_at(b.ids_in(pool, address), size), b.wide_of(size)
         values = floats_at(b.columns_in(pool, address, size), pool[b.PARTS] * wide)
         for i in range(size):
-            ids[first[p] + i] = own[i]
+            if pool[b.LISTED] == 1:
+                ids[first[p] + i] = own[i]
             for part in range(pool[b.PARTS]):
                 columns[pool[b.PARTS] * first[p] + part * size + i] = values[part * wide + i]
