@@ -10,8 +10,8 @@ from math import nan
 
 from jaart.core.kernels import records as r
 from jaart.core.kernels.accept import ended
-from jaart.core.kernels.address import floats_at, load, set_once, wholes_at
-from jaart.core.kernels.blocks import ASKED, FITTED, ROWS, is_short
+from jaart.core.kernels.address import fetch, floats_at, load, set_once, wholes_at
+from jaart.core.kernels.blocks import ASKED, FITTED, LINE, ROWS, is_short
 from jaart.core.kernels.call import evaluate_at
 from jaart.core.kernels.guess import GUESS_WIDTH, HEIGHT, N_X, N_Y, N_Z, STATE, meets, write_guess
 from jaart.core.kernels.jit import STRICT, kernel
@@ -24,6 +24,16 @@ from jaart.core.kernels.vectors import dot
 BEFORE, BEYOND = 0.5, 2.5
 #: Bytes of a row.
 _ROW = 8 * GUESS_WIDTH
+
+
+@kernel(STRICT, inline=True)
+def fetch_row(sites: Sites, cell: Cell) -> None:
+    """Fetch ahead what is kept at a cell's centre, if anything is kept of cells."""
+    number, pool = place_number(sites, cell), sites.pool
+    if pool[ROWS] > 0 and number >= 0:
+        fetch(wholes_at(pool[ASKED], 1), number)
+        for line in range(3):
+            fetch(wholes_at(pool[ROWS] + _ROW * number, 1), line * LINE)
 
 
 @kernel(STRICT)

@@ -6,12 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jaart.core.kernels import blocks as b
-from jaart.core.kernels.address import floats_at, ids_at, load, wholes_at
+from jaart.core.kernels.address import fetch, floats_at, ids_at, load, wholes_at
 from jaart.core.kernels.call import gather_at
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.records import Array, Cell, Near, Numbers, Sites, Unsigned, Vector
 
 _ZERO, _THREE = np.uint64(0), np.uint64(3)
+#: So much of a block is fetched ahead; what follows comes by itself, one line after the other.
+_LINES = 16
 
 
 @kernel(STRICT, inline=True)
@@ -66,6 +68,16 @@ def surfels_near(sites: Sites, cell: Cell) -> Near:
     There are none, and the pool says so, where it is short of room for them.
     """
     return near_in(sites.pool, block_of(sites, cell))
+
+
+@kernel(STRICT, inline=True)
+def fetch_near(sites: Sites, cell: Cell) -> None:
+    """Fetch ahead what was gathered near a cell of a lattice."""
+    number = place_number(sites, cell)
+    if number >= 0:
+        address = load(sites.slots, number)
+        for line in range(_LINES):
+            fetch(wholes_at(address, 1), line * b.LINE)
 
 
 @kernel(STRICT, inline=True)

@@ -12,13 +12,15 @@ from jaart.core.kernels import records as r
 from jaart.core.kernels.blocks import is_short
 from jaart.core.kernels.call import search_from
 from jaart.core.kernels.counts import forget_counts, write_counts
+from jaart.core.kernels.first_guess import fetch_row
 from jaart.core.kernels.jit import STRICT, kernel
 from jaart.core.kernels.leaving import FARTHEST, Leave, counting, least_of_energies, leave
 from jaart.core.kernels.log import end_log
-from jaart.core.kernels.near import surfels_near
+from jaart.core.kernels.near import fetch_near, surfels_near
 from jaart.core.kernels.packet import (
     BAD,
     ENTER,
+    FOUND,
     LANES,
     LEAVE,
     LEFT,
@@ -213,6 +215,10 @@ def trace_rays(cells: Cells, plan: Plan, origins: Array, directions: Array, begi
             o, d = ray_of(origins, directions, to)
             place_ray(p, lane, o, d, begins[to] if begins.size > 0 else 0.0)
         walk_together(p, cells.empty, free_of(cells), cells.uniform > 0.0, count)
+        for lane in range(count):
+            if p[STATE + lane] == FOUND:
+                fetch_row(cells.sites, whole(spot_in(p, lane)))
+                fetch_near(cells.sites, whole(spot_in(p, lane)))
         for lane in range(count):
             end = end_in(cells, plan, p, lane, log, scratch, fitted)
             if is_short(cells.sites.pool):

@@ -37,7 +37,7 @@ from jaart.core.kernels.abreast import (
 from jaart.core.kernels.blocks import is_short
 from jaart.core.kernels.counts import forget_counts, write_counts
 from jaart.core.kernels.jit import STRICT, kernel
-from jaart.core.kernels.near import surfels_near
+from jaart.core.kernels.near import fetch_near, surfels_near
 from jaart.core.kernels.packet import (
     ABREAST,
     AT,
@@ -99,6 +99,9 @@ def search_abreast(p: Array, cells: Cells, plan: Plan, nx: float, ny: float, nz:
     """Search with a vector of rays until each has hit or left; whether there was room for all that was asked for."""
     forget(p, first)
     while begin(p, first) > 0:
+        for lane in range(first, first + ABREAST):
+            if p[STATE + lane] == SEARCHING:
+                fetch_near(cells.sites, whole(vector_in(p, CELL, lane)))
         going = 1
         while going > 0:
             for lane in range(first, first + ABREAST):
